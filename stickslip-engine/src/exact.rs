@@ -5,6 +5,8 @@
 //! whole numbers, and rounded once (Kulisch 2013, Computer Arithmetic and Validity; the digits are those of Neal 2015,
 //! arXiv:1505.05571).
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 /// Bits of a digit. Digits are kept in 64 bits, so that thousands of numbers are added before any is carried.
 const DIGIT: u32 = 32;
 
@@ -155,6 +157,23 @@ impl ExactSum {
         let power = DIGIT as i32 * first as i32 - 1074;
         let magnitude = rounded * 2_f64.powi(power / 2) * 2_f64.powi(power - power / 2);
         if negative { -magnitude } else { magnitude }
+    }
+}
+
+/// As what [`ExactSum::write_to`] writes.
+impl Serialize for ExactSum {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut bytes = Vec::new();
+        self.clone().write_to(&mut bytes);
+        serde_bytes::serialize(&bytes, serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for ExactSum {
+    fn deserialize<X: Deserializer<'de>>(deserializer: X) -> Result<Self, X::Error> {
+        let bytes: Vec<u8> = serde_bytes::deserialize(deserializer)?;
+        let read = ExactSum::read_from(&bytes);
+        read.map(|(sum, _)| sum).ok_or_else(|| serde::de::Error::custom("it is cut off"))
     }
 }
 

@@ -6,6 +6,7 @@
 //! as data, a column) it holds for as long as it looks.
 
 use crate::column::ColumnDescription;
+use crate::contact::ContactSums;
 use crate::door::{
     BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
     ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError, SavedBody,
@@ -13,7 +14,7 @@ use crate::door::{
     WrittenValues,
 };
 use crate::lanes::Processor;
-use crate::ranks::{Ranks, Threads};
+use crate::ranks::{Ranks, Threads, all_of, bytes_of, read};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
 use crate::step::{self, ParticleLoop};
@@ -79,6 +80,8 @@ enum Call {
     Bodies,
     Ledger,
     Loads,
+    ContactSums,
+    Patches,
     Snapshot,
     Visit(usize),
     Fastest(usize, [f64; 3]),
@@ -107,19 +110,9 @@ struct Part {
 /// The first rank's.
 struct Leader(Part);
 
-/// Bytes of what ranks tell each other.
-fn bytes_of(said: &impl Serialize) -> Vec<u8> {
-    rmp_serde::to_vec(said).expect("memory takes what is written")
-}
-
-/// The same where fields may be left out: with their names.
+/// [`bytes_of`] where fields may be left out: with their names.
 fn named_bytes_of(said: &impl Serialize) -> Vec<u8> {
     rmp_serde::to_vec_named(said).expect("memory takes what is written")
-}
-
-/// What such bytes say.
-fn read<X: DeserializeOwned>(bytes: &[u8]) -> X {
-    rmp_serde::from_slice(bytes).expect("ranks run the same program")
 }
 
 impl Part {
@@ -130,7 +123,7 @@ impl Part {
 
     /// What each rank says, by rank, for the first.
     fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
-        self.ranks.tell_first(&bytes_of(said)).iter().map(|said| read(said)).collect()
+        all_of(&self.ranks.tell_first(&bytes_of(said)))
     }
 
     /// Does what the first rank asks; false if that was the last.
@@ -148,6 +141,8 @@ impl Part {
             Call::Bodies => drop(self.own.bodies()),
             Call::Ledger => drop(self.own.ledger()),
             Call::Loads => drop(self.own.loads()),
+            Call::ContactSums => drop(self.contact_sums()),
+            Call::Patches => drop(self.patches()),
             Call::Snapshot => drop(self.snapshot()),
             Call::Visit(body) => drop(self.views(body)),
             Call::Fastest(body, against) => drop(self.fastest(body, against)),
@@ -172,6 +167,18 @@ impl Part {
 
     fn particles(&self) -> usize {
         self.gathered(&self.own.particles()).iter().sum()
+    }
+
+    fn contact_sums(&self) -> Vec<ContactSum> {
+        let mut all = self.gathered(&self.own.contact_sums()).concat();
+        all.sort_unstable_by_key(|sum| sum.bodies);
+        all
+    }
+
+    fn patches(&self) -> Vec<ContactPatch> {
+        let mut all = self.gathered(&self.own.patches()).concat();
+        all.sort_unstable_by_key(|patch| (patch.body_a, patch.body_b));
+        all
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
@@ -226,7 +233,9 @@ impl Part {
         let mut all: Vec<_> = self.gathered(&own.bodies).into_iter().map(Vec::into_iter).collect();
         let of_body = |_| SavedBody::merged(all.iter_mut().filter_map(Iterator::next).collect());
         let bodies = own.bodies.iter().filter_map(of_body).collect();
-        Some(SavedState { bodies, ..own })
+        let sums = self.ranks.tell_first(&named_bytes_of(&own.contact_sums));
+        let contact_sums = ContactSums::merged(all_of(&sums));
+        Some(SavedState { bodies, contact_sums, ..own })
     }
 
     fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
@@ -313,7 +322,7 @@ impl View for Leader {
     }
 
     fn contact_sums(&self) -> Vec<ContactSum> {
-        self.0.own.contact_sums()
+        self.tell(&Call::ContactSums).contact_sums()
     }
 
     fn loads(&self) -> Vec<LoadState> {
@@ -329,7 +338,7 @@ impl View for Leader {
     }
 
     fn patches(&self) -> Vec<ContactPatch> {
-        self.0.own.patches()
+        self.tell(&Call::Patches).patches()
     }
 
     fn removed(&self) -> Vec<RemovedParticles> {

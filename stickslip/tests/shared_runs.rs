@@ -3,8 +3,9 @@
 //! Set-up: two disks, one viscoelastic and one that flows, fall on each other and on a rigid floor without bounds with
 //! friction, beside a driven rigid paddle and a mirror, with every kind of output; a disk that flies through the faces
 //! of a periodic domain; a block from a mesh that falls on another one in space; bodies under loads, on supports and
-//! springs; and bodies that lose particles. By one rank, and by two and three that are threads of the test; stopped,
-//! and taken up by another number of ranks; and a scene that begins from another run.
+//! springs; bodies that lose particles; free rigid bodies, with joints and without. By one rank, and by two and three
+//! that are threads of the test; stopped, and taken up by another number of ranks; and a scene that begins from another
+//! run.
 //!
 //! Expected: every file has the bytes of one rank's. No tolerance.
 
@@ -289,6 +290,88 @@ particles = 0.02
 checkpoints = 0.01
 "#;
 
+/// Free rigid bodies for the scene above: a flap on a hinge, a pebble that a string holds to it, a plate that is pressed
+/// onto a disk, and a nail that a spring pulls to one.
+const MECHANISM: &str = r#"
+[[bodies]]
+name = "flap"
+material = "slow"
+shape.box = { min = [0.52, 0.1], max = [0.72, 0.7] }
+rigid.free = {}
+[[bodies]]
+name = "pebble"
+material = "slow"
+shape.ball = { center = [1.2, 0.4], radius = 0.2 }
+velocity = [-1.5, -1]
+rigid.free = {}
+[[bodies]]
+name = "plate"
+material = "slow"
+shape.box = { min = [-0.4, 2.05], max = [0.9, 2.35] }
+rigid.free = { mass = 800 }
+[[bodies]]
+name = "nail"
+material = "slow"
+shape.box = { min = [1.6, 1.0], max = [1.9, 1.3] }
+rigid.free = {}
+[[joints]]
+body = "flap"
+hinge = { point = [0.62, 0.7], stiffness = 40, dashpot = 2 }
+[[joints]]
+name = "string"
+body = "flap"
+to = "pebble"
+spring = { from = [0.7, 0.3], to = [1.2, 0.4], stiffness = 300 }
+[[loads]]
+name = "press"
+body = "plate"
+on = "y_max"
+traction = [0, "-2000 * (1 - exp(-t / 0.05))"]
+[[springs]]
+name = "pull"
+from = { body = "nail", on = "x_min" }
+to = { body = "high", on = "x_max" }
+stiffness = 3e3
+"#;
+
+/// A rigid block and rigid balls that fall on a soft one and on each other.
+const DROPPED: &str = r#"
+gravity = [0, 0, -9.81]
+[space]
+dimension = "3d"
+cell = 0.125
+basis = "linear"
+[time]
+end = 0.15
+[materials.rubber]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "bed"
+material = "rubber"
+shape.box = { min = [0, 0, 0], max = [1.5, 1, 0.5] }
+[[bodies]]
+name = "block"
+material = "rubber"
+shape.box = { min = [0.2, 0.2, 0.52], max = [0.8, 0.7, 0.9] }
+velocity = [1, 0, -1]
+rigid.free = {}
+[[bodies]]
+name = "ball {i}"
+repeat = { i = 3 }
+material = "rubber"
+shape.ball = { center = ["0.3 + 0.45 * i", "0.4 + 0.05 * i", 1.15], radius = 0.2 }
+velocity = [0, 0, -2]
+spin = [0, 3, 1]
+rigid.free = {}
+[[contact]]
+friction = 0.3
+[outputs]
+tables = 0.005
+particles = 0.05
+checkpoints = 0.02
+"#;
+
 /// The unit cube.
 fn cube() -> String {
     let corner = |i: usize| {
@@ -327,6 +410,9 @@ fn ranks_write_what_one_writes() {
     let unmirrored =
         LOADED.replace(", x_min = \"symmetry\"", "").replace("[\"y_min\", \"x_min\"]", "[\"y_min\"]");
     assert!(!unmirrored.contains("symmetry"));
+    let mechanism = [PLANE, MECHANISM].concat();
+    // Nothing but rigid bodies: no grid.
+    let carriage = include_str!("../../scenes/carriage.toml").replace("end = \"3 s\"", "end = 0.3");
     let scenes = [
         ("plane", PLANE),
         ("periodic", PERIODIC),
@@ -336,6 +422,9 @@ fn ranks_write_what_one_writes() {
         ("loaded, without a mirror", &unmirrored),
         ("stacked", STACKED),
         ("losing", LOSING),
+        ("mechanism", &mechanism),
+        ("dropped", DROPPED),
+        ("carriage", &carriage),
     ];
     for (name, text) in scenes {
         let folder = tempfile::tempdir().unwrap();

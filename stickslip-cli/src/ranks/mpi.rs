@@ -18,6 +18,10 @@ const FOR_FIRST: Tag = 0;
 /// Those of an exchange have this tag or the next one, by turns: who has left one may send in the next while others are
 /// still there.
 const EXCHANGE: Tag = 1;
+/// Those between ranks that both know of each other.
+const EXPECTED: Tag = 3;
+/// Those up and down the tree in which all are joined.
+const TREE: Tag = 4;
 
 /// The processes of an MPI job.
 pub struct Mpi {
@@ -63,6 +67,25 @@ impl Mpi {
         world().abort(code)
     }
 
+    /// What the first rank says, to all: down a binomial tree.
+    fn down_the_tree(&self, said: Vec<u8>) -> Vec<u8> {
+        let world = world();
+        let parent_bit = if self.rank == 0 {
+            self.count.next_power_of_two()
+        } else {
+            self.rank & self.rank.wrapping_neg()
+        };
+        let said = match self.rank {
+            0 => said,
+            rank => self.counted(0, 0, || receive(&world, rank - parent_bit, TREE)),
+        };
+        let bits = (0..usize::BITS).rev().map(|bit| 1 << bit).skip_while(|bit| *bit >= parent_bit);
+        for other in bits.map(|bit| self.rank + bit).filter(|other| *other < self.count) {
+            self.counted(1, said.len(), || send(&world, (other, &said), TREE));
+        }
+        said
+    }
+
     fn counted<X>(&self, messages: usize, bytes: usize, act: impl FnOnce() -> X) -> X {
         let begun = Instant::now();
         let result = act();
@@ -81,6 +104,29 @@ fn world() -> SimpleCommunicator {
 /// A message in pieces, the last of them shorter than the others, perhaps empty.
 fn pieces(message: &[u8]) -> impl Iterator<Item = &[u8]> {
     (0..=message.len() / PIECE).map(|i| &message[i * PIECE..message.len().min((i + 1) * PIECE)])
+}
+
+/// Sends a message to a rank, which waits for it.
+fn send(world: &SimpleCommunicator, (to, message): (usize, &[u8]), tag: Tag) {
+    let to = world.process_at_rank(to as i32);
+    pieces(message).for_each(|piece| to.send_with_tag(piece, tag));
+}
+
+/// The next message of a rank.
+fn receive(world: &SimpleCommunicator, from: usize, tag: Tag) -> Vec<u8> {
+    let (mut whole, from) = (Vec::new(), world.process_at_rank(from as i32));
+    loop {
+        let (piece, _) = from.matched_probe_with_tag(tag).matched_receive_vec::<u8>();
+        let last = piece.len() < PIECE;
+        if whole.is_empty() {
+            whole = piece;
+        } else {
+            whole.extend(piece);
+        }
+        if last {
+            return whole;
+        }
+    }
 }
 
 /// What a rank says to all, in pieces; its length is known.
@@ -148,6 +194,52 @@ impl Ranks for Mpi {
         })
     }
 
+    fn exchange_during(
+        &self,
+        messages: Vec<Message>,
+        from: &[usize],
+        work: &mut dyn FnMut(),
+    ) -> Vec<Message> {
+        let bytes = messages.iter().map(|(_, message)| message.len()).sum();
+        let world = world();
+        request::scope(|scope| {
+            let mut sends = Vec::new();
+            self.counted(messages.len(), bytes, || {
+                for (to, message) in &messages {
+                    let to = world.process_at_rank(*to as i32);
+                    sends.extend(
+                        pieces(message).map(|piece| to.immediate_send_with_tag(scope, piece, EXPECTED)),
+                    );
+                }
+            });
+            work();
+            self.counted(0, 0, || {
+                let came = from.iter().map(|&rank| (rank, receive(&world, rank, EXPECTED))).collect();
+                for send in sends {
+                    send.wait();
+                }
+                came
+            })
+        })
+    }
+
+    /// Up a binomial tree to the first rank, and down again.
+    fn combine(&self, said: Vec<u8>, join: &dyn Fn(&[u8], &[u8]) -> Vec<u8>) -> Vec<u8> {
+        let world = world();
+        let mut all = said;
+        for bit in (0..usize::BITS).map(|bit| 1 << bit).take_while(|bit| *bit < self.count) {
+            if self.rank & bit != 0 {
+                self.counted(1, all.len(), || send(&world, (self.rank - bit, &all), TREE));
+                break;
+            }
+            if self.rank + bit < self.count {
+                let other = self.counted(0, 0, || receive(&world, self.rank + bit, TREE));
+                all = join(&all, &other);
+            }
+        }
+        self.down_the_tree(all)
+    }
+
     fn gather(&self, said: &[u8]) -> Vec<Vec<u8>> {
         let world = world();
         self.counted(1, said.len(), || {
@@ -186,36 +278,17 @@ impl Ranks for Mpi {
     }
 
     fn hear_first(&self, said: &[u8]) -> Vec<u8> {
-        let (world, bytes) = (world(), if self.rank == 0 { said.len() } else { 0 });
-        self.counted(usize::from(self.rank == 0), bytes, || {
-            let first = world.process_at_rank(0);
-            let mut length = bytes as u64;
-            first.broadcast_into(&mut length);
-            let mut heard = if self.rank == 0 { said.to_vec() } else { vec![0; length as usize] };
-            spread(&first, &mut heard);
-            heard
-        })
+        self.down_the_tree(said.to_vec())
     }
 
     fn tell_first(&self, said: &[u8]) -> Vec<Vec<u8>> {
         let (world, bytes) = (world(), if self.rank == 0 { 0 } else { said.len() });
         self.counted(usize::from(self.rank > 0), bytes, || {
             if self.rank > 0 {
-                let first = world.process_at_rank(0);
-                pieces(said).for_each(|piece| first.send_with_tag(piece, FOR_FIRST));
+                send(&world, (0, said), FOR_FIRST);
                 return Vec::new();
             }
-            let others = (1..self.count).map(|rank| {
-                let (mut whole, from) = (Vec::new(), world.process_at_rank(rank as i32));
-                loop {
-                    let (piece, _) = from.matched_probe_with_tag(FOR_FIRST).matched_receive_vec::<u8>();
-                    let last = piece.len() < PIECE;
-                    whole.extend(piece);
-                    if last {
-                        return whole;
-                    }
-                }
-            });
+            let others = (1..self.count).map(|rank| receive(&world, rank, FOR_FIRST));
             [said.to_vec()].into_iter().chain(others).collect()
         })
     }

@@ -161,8 +161,8 @@ impl ContactSums {
         }) && self.present.iter().all(|&place| place < self.pairs.len())
     }
 
-    /// Adds what pairs did in one use of contact, ordered by pair and block; surfaces count as touching for `duration`
-    /// [s].
+    /// Adds what pairs did in one use of contact, ordered by pair and block, pair by pair; surfaces count as touching for
+    /// `duration` [s].
     pub fn add<T: Real, const D: usize>(
         &mut self,
         touches: &[BlockSums],
@@ -198,10 +198,6 @@ impl ContactSums {
             sum.normal += touch.normal;
             sum.friction += touch.friction;
             (sum.pushes, sum.reduced) = (sum.pushes + touch.nodes, sum.reduced + touch.reduced);
-            self.friction += touch.friction;
-            self.adhesion += touch.adhesion;
-            self.scaled += touch.reduced;
-            self.work += touch.work;
         }
         for &place in &self.present {
             let TouchedPair { bodies: [body_a, body_b], sum: ImpulseSums { last, .. }, largest, .. } =
@@ -225,7 +221,6 @@ impl ContactSums {
     /// Counts the impulses of a use that enters no sum, and how many of them were reduced.
     pub fn count(&mut self, touches: &[BlockSums]) {
         for touch in touches {
-            self.scaled += touch.reduced;
             if let Some(&place) = self.places.get(&touch.bodies) {
                 let sum = &mut self.pairs[place].sum;
                 (sum.pushes, sum.reduced) = (sum.pushes + touch.nodes, sum.reduced + touch.reduced);
@@ -233,7 +228,8 @@ impl ContactSums {
         }
     }
 
-    /// Adds what two rigid bodies did to each other at a point in a step of `duration` [s]; points have no area.
+    /// Adds what two rigid bodies did to each other at a point in a step of `duration` [s]; points have no area. Works of
+    /// all pairs together are not among it.
     pub fn touch(&mut self, touch: &RigidTouch, duration: f64) {
         let RigidTouch { bodies, push, rub, place, friction, .. } = touch;
         let pair = self.place(*bodies);
@@ -251,14 +247,29 @@ impl ContactSums {
         sum.impulse = (Vector(sum.impulse) - push - rub).0;
         sum.moment = (Vector(sum.moment) + Vector(*place) * magnitude).0;
         sum.turn = (Vector(sum.turn) - Vector(cross(*place, (push + rub).0))).0;
-        self.rub(*bodies, *friction);
+        sum.friction += friction;
     }
 
-    /// Adds work that friction took from two bodies [J].
-    fn rub(&mut self, bodies: [usize; 2], work: f64) {
-        let place = self.place(bodies);
-        self.pairs[place].sum.friction += work;
-        self.friction += work;
+    /// Keeps the pairs that are wanted.
+    pub fn keep(&mut self, wanted: impl Fn([usize; 2]) -> bool) {
+        let mut all = std::mem::take(self);
+        all.pairs.retain(|pair| wanted(pair.bodies));
+        *self = all.in_order().indexed();
+    }
+
+    /// The sums of pairs that several keep, and what else the first one knows as all of them do.
+    pub fn merged(all: Vec<Self>) -> Self {
+        let mut all = all.into_iter();
+        let mut first = all.next().unwrap_or_default();
+        first.pairs.extend(all.flat_map(|other| other.pairs));
+        first.in_order()
+    }
+
+    /// With its pairs in the order of their bodies.
+    pub fn in_order(mut self) -> Self {
+        self.pairs.sort_unstable_by_key(|pair| pair.bodies);
+        self.present.clear();
+        self
     }
 
     /// Where a pair stands, from now on if not before.

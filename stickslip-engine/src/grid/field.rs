@@ -383,22 +383,13 @@ impl<T: Real, const D: usize> Window<T, D> {
         }
     }
 
-    /// Adds to the field what was scattered into a window with this side, but for the tile's blocks that are left out,
-    /// a bit each.
+    /// Adds to the field what was scattered into a window with this side.
     ///
     /// # Safety
-    /// No other thread may touch the tile's other slots meanwhile.
+    /// No other thread may touch the tile's slots meanwhile.
     #[inline(always)]
-    pub unsafe fn add_to<M: Machine<T>>(
-        &self,
-        field: &Disjoint<Node<T, D>>,
-        (tile, left_out): (&Tile<D>, u8),
-        side: usize,
-    ) {
-        for NodeRun { place, node, count, corner } in NodeRuns::<D>::new(&tile.slots, side) {
-            if left_out >> corner & 1 == 1 {
-                continue;
-            }
+    pub unsafe fn add_to<M: Machine<T>>(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
+        for NodeRun { place, node, count, .. } in NodeRuns::<D>::new(&tile.slots, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 unsafe { Node::take::<M>(field.get(node + k), &self.sums[place + k]) };

@@ -11,6 +11,7 @@ pub use partition::Partition;
 pub use threads::Threads;
 
 use crate::exact::ExactSum;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// A message with the other rank: whom it is for, or who sent it.
@@ -23,6 +24,32 @@ pub fn message_to(messages: &mut Vec<Message>, rank: usize) -> &mut Vec<u8> {
         messages.len() - 1
     });
     &mut messages[place].1
+}
+
+/// What all ranks say, joined two by two, for all of them. It must not matter who is joined with whom.
+pub fn combined<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X, join: impl Fn(X, X) -> X) -> X {
+    let join = |a: &[u8], b: &[u8]| bytes_of(&join(read(a), read(b)));
+    read(&ranks.combine(bytes_of(said), &join))
+}
+
+/// What each rank says, by rank.
+pub fn gathered<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X) -> Vec<X> {
+    all_of(&ranks.gather(&bytes_of(said)))
+}
+
+/// Bytes of what ranks tell each other.
+pub fn bytes_of(said: &impl Serialize) -> Vec<u8> {
+    rmp_serde::to_vec(said).expect("memory takes what is written")
+}
+
+/// What such bytes say.
+pub fn read<X: DeserializeOwned>(bytes: &[u8]) -> X {
+    rmp_serde::from_slice(bytes).expect("ranks run the same program")
+}
+
+/// What the bytes of each rank say.
+pub fn all_of<X: DeserializeOwned>(said: &[Vec<u8>]) -> Vec<X> {
+    said.iter().map(|said| read(said)).collect()
 }
 
 /// What a rank sent to others, and how long it waited for them.
@@ -67,6 +94,17 @@ pub trait Ranks: Send + Sync {
     /// Sends a message to each of some other ranks, and takes those that came, by rank.
     fn exchange(&self, messages: Vec<Message>) -> Vec<Message>;
 
+    /// Sends a message to each of some other ranks and works while they are under way, then takes one of each of `from`,
+    /// in this order. Both sides know who sends to whom.
+    fn exchange_during(&self, messages: Vec<Message>, from: &[usize], work: &mut dyn FnMut())
+    -> Vec<Message>;
+
+    /// What all ranks say, joined two by two, for all of them. It must not matter who is joined with whom.
+    fn combine(&self, said: Vec<u8>, join: &dyn Fn(&[u8], &[u8]) -> Vec<u8>) -> Vec<u8> {
+        let all = self.gather(&said).into_iter();
+        all.reduce(|a, b| join(&a, &b)).unwrap_or(said)
+    }
+
     /// What each rank says, by rank.
     fn gather(&self, said: &[u8]) -> Vec<Vec<u8>>;
 
@@ -84,27 +122,20 @@ pub trait Ranks: Send + Sync {
 
     /// What was sent so far, and how long this rank waited for others.
     fn traffic(&self) -> SentAndWaited;
+}
 
-    /// The largest of the numbers of all ranks.
-    fn largest(&self, x: f64) -> f64 {
-        let said = self.gather(&x.to_le_bytes());
-        let numbers =
-            said.iter().filter_map(|bytes| bytes.first_chunk().map(|bytes| f64::from_le_bytes(*bytes)));
-        numbers.fold(f64::NEG_INFINITY, f64::max)
-    }
+/// The largest of the numbers of all ranks.
+pub fn largest(ranks: &dyn Ranks, x: f64) -> f64 {
+    combined(ranks, &x, f64::max)
+}
 
-    /// Adds up the sums of all ranks.
-    fn add_up(&self, sums: &mut [ExactSum]) {
-        let mut said = Vec::new();
-        sums.iter_mut().for_each(|sum| sum.write_to(&mut said));
-        sums.fill(ExactSum::default());
-        for bytes in self.gather(&said) {
-            let mut rest = &bytes[..];
-            for sum in &mut *sums {
-                let (other, behind) = ExactSum::read_from(rest).expect("ranks run the same program");
-                sum.merge(&other);
-                rest = behind;
-            }
-        }
-    }
+/// Adds up the sums of all ranks.
+pub fn add_up(ranks: &dyn Ranks, sums: &mut Vec<ExactSum>) {
+    *sums = combined(ranks, sums, joined);
+}
+
+/// Sums that belong together, added.
+pub fn joined(mut sums: Vec<ExactSum>, others: Vec<ExactSum>) -> Vec<ExactSum> {
+    sums.iter_mut().zip(&others).for_each(|(sum, other)| sum.merge(other));
+    sums
 }

@@ -1,6 +1,8 @@
 //! The verb that books what a step did: contact, the work of friction and of damping, and what forces lack to balance.
 
 use super::Engine;
+use super::among::Among;
+use super::pass::FaultReport;
 use super::state::Workspace;
 use crate::basis::Basis;
 use crate::body::Body;
@@ -8,9 +10,11 @@ use crate::contact::{BlockSums, Change, Impulse, Impulses, Span};
 use crate::exact::ExactSum;
 use crate::grid::{Node, locate, next_of, node_at, nodes_per_block};
 use crate::lanes::Laned;
+use crate::ranks::{combined, joined};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Blocks that a thread takes at a time.
@@ -27,6 +31,29 @@ pub(super) struct StepSums {
     pub nodes: [ExactSum; 5],
     /// Nodes at which pairs had not come to rest.
     unsettled: ExactSum,
+    /// Of contact, what friction and bonds took and what prescribed motion did [J], and how many impulses were reduced.
+    contact: [ExactSum; 4],
+}
+
+/// What a step is like on one rank, or on several together.
+#[derive(Serialize, Deserialize)]
+struct StepEnd {
+    fault: Option<(u32, FaultReport)>,
+    signal: Option<f64>,
+    sums: Vec<ExactSum>,
+}
+
+impl StepEnd {
+    /// That of both: the first fault by pass, body and particle.
+    fn and(self, other: Self) -> Self {
+        let rank = |(pass, fault): &(u32, FaultReport)| (*pass, fault.body, fault.number);
+        let faults = self.fault.into_iter().chain(other.fault);
+        StepEnd {
+            fault: faults.min_by_key(rank),
+            signal: self.signal.into_iter().chain(other.signal).reduce(f64::max),
+            sums: joined(self.sums, other.sums),
+        }
+    }
 }
 
 impl StepSums {
@@ -38,6 +65,17 @@ impl StepSums {
     /// At how many nodes pairs had not come to rest when the last sweep over them was done.
     pub fn unsettled(&mut self) -> &mut ExactSum {
         &mut self.unsettled
+    }
+
+    /// Adds what contact did in a use.
+    fn touch(&mut self, touches: &[BlockSums]) {
+        for touch in touches {
+            let [friction, adhesion, work, reduced] = &mut self.contact;
+            friction.add(touch.friction);
+            adhesion.add(touch.adhesion);
+            work.add(touch.work);
+            reduced.add(touch.reduced as f64);
+        }
     }
 }
 
@@ -71,21 +109,61 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Books the sums of the step, over all ranks.
-    pub(super) fn book_sums(&mut self) {
-        let StepSums { nodes: [unbalanced, internal, external, kinetic, damped], unsettled } =
-            std::mem::take(&mut self.workspace.sums);
-        let mut sums = [unbalanced, internal, external, kinetic, damped, unsettled];
-        if let Some(among) = &self.among {
-            among.ranks.add_up(&mut sums);
-            self.state.signal = self.state.signal.map(|signal| among.ranks.largest(signal));
+    /// Ends the step on all ranks: books its sums, or gives the first fault that any of them found.
+    pub(super) fn end_step(&mut self, dt: T) -> Result<(), FaultReport> {
+        let StepSums { nodes, unsettled, contact } = std::mem::take(&mut self.workspace.sums);
+        let own = StepEnd {
+            fault: self.among.as_mut().and_then(Among::fault),
+            signal: self.state.signal,
+            sums: nodes.into_iter().chain([unsettled]).chain(contact).collect(),
+        };
+        let StepEnd { fault, signal, sums } = match &self.among {
+            Some(among) => combined(&*among.ranks, &own, StepEnd::and),
+            None => own,
+        };
+        if let Some((_, fault)) = fault {
+            return Err(fault);
         }
-        let [unbalanced, internal, external, kinetic, damped, unsettled] = sums.map(|sum| sum.value());
+        self.state.signal = signal;
+        let sums: Vec<f64> = sums.iter().map(ExactSum::value).collect();
+        let [unbalanced, internal, external, kinetic, damped, unsettled, rubbed, torn, work, reduced] =
+            sums[..]
+        else {
+            unreachable!("all ranks have the same sums")
+        };
         self.state.damping += damped;
-        self.state.contact_sums.unsettled += unsettled as u64;
+        let contact = &mut self.state.contact_sums;
+        (contact.friction, contact.adhesion) = (contact.friction + rubbed, contact.adhesion + torn);
+        contact.work += work;
+        contact.scaled += reduced as u64;
+        contact.unsettled += unsettled as u64;
         if self.measures_balance() {
             self.state.relaxation.take([unbalanced, internal, external], kinetic);
         }
+        self.book_touches(dt);
+        Ok(())
+    }
+
+    /// Books what pairs of bodies did in the step. Of several ranks, each books the pairs whose sums it keeps.
+    fn book_touches(&mut self, dt: T) {
+        let start = Instant::now();
+        let Workspace { touches, mechanism, boundary, .. } = &mut self.workspace;
+        let (sums, place) = (&mut self.state.contact_sums, (&self.settings.lattice, &*boundary));
+        if let Some(among) = &self.among {
+            among.send_to_keepers(touches);
+        }
+        // How long surfaces touch is counted once a step.
+        let [first, second, third] = touches;
+        sums.add(first, place, 0.0);
+        sums.add(second, place, dt.f64());
+        sums.count(third);
+        for touch in mechanism.booked() {
+            sums.friction += touch.friction;
+            if self.among.as_ref().is_none_or(|among| among.keeps(touch.bodies)) {
+                sums.touch(touch, dt.f64());
+            }
+        }
+        self.watch.lap("contact", start);
     }
 
     /// Whether a step looks how far its forces are from balance.
@@ -104,7 +182,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// it within the step, and says little of how particles move.
     fn book_contact(&mut self, dt: T, twice: bool) {
         let start = Instant::now();
-        let mut touches = std::mem::take(&mut self.workspace.touches);
+        let [mut one, mut two, mut three] = std::mem::take(&mut self.workspace.touches);
         let (nodes, rules) = (&self.workspace.field.nodes, &self.settings.rules);
         let seen = |node: usize| {
             let node = &nodes[node];
@@ -126,18 +204,29 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             [if rubs { took(tangential) } else { 0.0 }, if pulls { took(on_a - tangential) } else { 0.0 }]
         };
         let [first, second, _] = &self.workspace.impulses;
-        let place = (&self.settings.lattice, &self.workspace.boundary);
-        // How long surfaces touch is counted once a step.
-        self.list_touches(&mut touches, (first, |impulse| impulse.span == Span::EachUse), works);
-        self.state.contact_sums.add(&touches, place, 0.0);
-        self.list_touches(&mut touches, (second, |_| true), works);
-        self.state.contact_sums.add(&touches, place, dt.f64());
-        self.workspace.touches = touches;
+        self.list_touches(&mut one, (first, |impulse| impulse.span == Span::EachUse), works);
+        self.list_touches(&mut two, (second, |_| true), works);
+        [&one, &two].into_iter().for_each(|touches| self.workspace.sums.touch(touches));
+        three.clear();
+        self.workspace.touches = [one, two, three];
         self.watch.lap("contact", start);
     }
 
-    /// Lists what pairs did in a use of contact, on all ranks, by those of the impulses that count.
-    pub(super) fn list_touches(
+    /// Lists what pairs did in the third use of contact. What the others gave stands in the account of the step.
+    pub(super) fn count_pushes(&mut self) {
+        let [one, two, mut three] = std::mem::take(&mut self.workspace.touches);
+        let pushes = |impulse: &Impulse<T, D>| impulse.change.pushes();
+        self.list_touches(&mut three, (&self.workspace.impulses[2], pushes), |_| [0.0; 2]);
+        for touch in &mut three {
+            // It enters no sum of works.
+            touch.work = 0.0;
+        }
+        self.workspace.sums.touch(&three);
+        self.workspace.touches = [one, two, three];
+    }
+
+    /// Lists what pairs did in a use of contact at the blocks that this rank books, by those of the impulses that count.
+    fn list_touches(
         &self,
         touches: &mut Vec<BlockSums>,
         (impulses, counts): (&Impulses<T, D>, impl Fn(&Impulse<T, D>) -> bool),
@@ -147,9 +236,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let here = |impulse: &&Impulse<T, D>| counts(impulse) && active.books(locate(impulse.node).0);
         let here = impulses.iter().filter(here);
         BlockSums::list(touches, here, (&self.settings.lattice, boundary), works);
-        if let Some(among) = &self.among {
-            among.gather_touches(touches);
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! From a scene to a simulation.
 
+use super::among::Home;
 use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
@@ -52,7 +53,7 @@ pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
 /// `step`, `bodies`, `ledger`, `contact_sums` and what else is of the whole ask the others. What is of single particles
 /// is of those that this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`,
-/// `save`, `save_columns`. Nobody can write to it or give it another state; [`crate::shared`] has what runs need.
+/// `save`, `save_columns`; `contact_sums` and `patches` are of pairs whose sums it keeps. Nobody can write to it or give it another state; [`crate::shared`] has what runs need.
 ///
 /// # Errors
 /// What [`check::problems`] finds, and what ranks cannot share yet.
@@ -146,15 +147,23 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         };
         // How many particles begin in each block.
         let mut loads: HashMap<[i32; D], u64> = HashMap::new();
+        // Of each body, the block in which its first particle begins, and how many there are.
+        let mut begins = Vec::new();
         for body in &scene.bodies {
             let filling = fill(&body.shape, &scene.lattice(body), body.particles);
-            for site in filling.iter().flat_map(|filling| &filling.sites) {
+            let sites = filling.as_ref().map_or(&[][..], |filling| &filling.sites);
+            begins.push((sites.first().map(|site| block(site.position)), sites.len()));
+            for site in sites {
                 *loads.entry(block(site.position)).or_default() += 1;
             }
         }
         let partition = Partition::balanced(ranks.count(), None, loads);
+        let home = |&(first, count): &(Option<[i32; D]>, usize)| {
+            Home::new(first.map_or(0, |block| partition.owner(block)), count)
+        };
+        let homes = begins.iter().map(home).collect();
         let mut engine = Self::keeping(scene, path, |x| partition.owner(block(x)) == ranks.rank())?;
-        engine.join(ranks, partition);
+        engine.join(ranks, (partition, homes));
         Ok(engine)
     }
 

@@ -5,10 +5,11 @@
 //! comes first, nor on where particles lie in memory.
 
 use super::Engine;
+use super::among::Among;
 use super::pass::{Found, ParticleLoop, Pass, Verbs, Visit};
 use super::tile::SeveralAtATime;
 use crate::basis::Basis;
-use crate::grid::{Disjoint, Field, NodeSums, Window, window_side};
+use crate::grid::{Disjoint, Field, NodeSums, Window, add_corner, window_side};
 use crate::lanes::Laned;
 use crate::particles::Columns;
 use crate::threads::each_range;
@@ -42,14 +43,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
         self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
+        let guests = if pass.verbs.scatter.is_some() { self.guests_to_send() } else { None };
+        let sends_guests = guests.is_some();
         let mut among = self.among.take();
         let side = window_side(B::WIDTH).pow(D as u32);
-        let mut nothing = Vec::new();
-        let windows = match (&mut among, pass.verbs.scatter) {
-            (Some(among), Some(_)) => among.make_room(self.workspace.active.border.as_deref(), side),
-            _ => &mut nothing,
+        let mut kept_windows = match (&mut among, pass.verbs.scatter) {
+            (Some(among), Some(_)) => among.take_room(self.workspace.active.border.as_deref(), side),
+            _ => Vec::new(),
         };
-        let windows = Disjoint::new(windows);
+        let windows = Disjoint::new(&mut kept_windows);
         let Field { nodes, filtered, means, .. } = &mut self.workspace.field;
         let nodes = Disjoint::new(nodes);
         let left = Disjoint::new(&mut self.workspace.left);
@@ -59,15 +61,23 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             (&self.workspace.active, &self.state.bodies, &self.workspace.threads, self.settings.path);
         // Fed with the fastest signal of the tiles before it in its list, which spares it the roots of slower ones.
         // It changes no bit of what is found.
-        let visit = |index: u32, window: &mut Window<T, D>, signal: T| -> Found<T> {
+        let border = active.border.as_deref().filter(|_| pass.verbs.scatter.is_some());
+        let visit = |index: u32, window: &mut Window<T, D>, signal: T, keeps: bool| -> Found<T> {
             let tile = &active.tiles[index as usize];
             let body = &bodies[tile.body];
             let averages = pass.verbs.scatter.is_some_and(Share::is_averaged);
-            let (place, waiting) =
-                active.border.as_ref().map_or((None, 0), |border| border.of_tile[index as usize]);
-            let place = place.filter(|_| pass.verbs.scatter.is_some());
+            let (place, waiting) = border.map_or((None, 0), |border| border.of_tile[index as usize]);
             // SAFETY: every tile has a place of its own.
             let kept = place.map(|place| unsafe { windows.part(place as usize * side, side) });
+            if let (Some(kept), false) = (&kept, keeps) {
+                // What it gives is there already.
+                for corner in (0..1 << D).filter(|corner| waiting >> corner & 1 == 0) {
+                    let slot = (tile.slots[corner as usize], corner);
+                    // SAFETY: only this tile writes to its slots.
+                    unsafe { add_corner(kept, &nodes, slot, window_side(B::WIDTH)) };
+                }
+                return Found { signal, ..Found::NOTHING };
+            }
             if averages && !body.averages_volume() {
                 kept.into_iter().for_each(|kept| kept.fill(NodeSums::default()));
                 return Found { signal, ..Found::NOTHING };
@@ -85,7 +95,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 filtered,
                 means: if body.averages_volume() && !averages { means } else { &[] },
                 window,
-                kept: (kept, waiting),
+                kept,
                 next: active.tiles.get(index as usize + 1),
                 left: 0,
                 moved: 0,
@@ -94,7 +104,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 basis: PhantomData::<B>,
             };
             // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a
-            // pass without scatter, and only this tile to its slots in one with:
+            // pass without scatter and while windows are kept, and else only this tile to its slots:
             // portions and tiles of one colour share none.
             unsafe {
                 match path {
@@ -112,35 +122,55 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             visit.found
         };
-        let several = |tiles: &mut dyn Iterator<Item = u32>| -> Found<T> {
+        let several = |tiles: &mut dyn Iterator<Item = u32>, keep: bool| -> Found<T> {
             let thread = rayon::current_thread_index().unwrap_or(0);
             let mut window = room.windows[thread].lock().unwrap_or_else(PoisonError::into_inner);
-            tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window, found.signal)))
+            tiles.fold(Found::NOTHING, |found, tile| found.and(visit(tile, &mut window, found.signal, keep)))
         };
         let all = Mutex::new(Found::NOTHING);
-        let several = |tiles: &mut dyn Iterator<Item = u32>| {
-            let found = several(tiles);
+        let several = |tiles: &mut dyn Iterator<Item = u32>, keep: bool| {
+            let found = several(tiles, keep);
             let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
             // The first fault and the fastest signal, whoever comes first.
             *all = all.and(found);
         };
-        if pass.verbs.scatter.is_none() {
-            each_range(active.tiles.len(), TILES, &|range| several(&mut range.map(|tile| tile as u32)));
-        } else {
+        let scatter = || {
             each_range(active.portions.len(), 1, &|portions| {
                 for portion in &active.portions[portions] {
-                    several(&mut active.small[portion.clone()].iter().copied());
+                    several(&mut active.small[portion.clone()].iter().copied(), false);
                 }
             });
             for color in &active.colors {
-                each_range(color.len(), TILES, &|range| several(&mut color[range].iter().copied()));
+                each_range(color.len(), TILES, &|range| several(&mut color[range].iter().copied(), false));
             }
+        };
+        let mut came = Vec::new();
+        match (&among, border, pass.verbs.scatter) {
+            (_, _, None) => {
+                let all = active.tiles.len();
+                each_range(all, TILES, &|range| several(&mut range.map(|tile| tile as u32), false));
+            }
+            (Some(among), Some(border), Some(share)) => {
+                // What others wait for comes first, and is under way while the rest is done.
+                let kept = &border.kept;
+                each_range(kept.len(), TILES, &|range| several(&mut kept[range].iter().copied(), true));
+                let (shown, side) = ((&windows, share), window_side(B::WIDTH));
+                // SAFETY: all tiles that are kept have been visited.
+                let messages = unsafe { Among::windows_for_others::<D>((border, guests), shown, side) };
+                let from: Vec<usize> = border.incoming.iter().map(|traffic| traffic.rank).collect();
+                came = among.ranks.exchange_during(messages, &from, &mut || scatter());
+            }
+            _ => scatter(),
         }
         let found = all.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if let (Some(among), Some(border), Some(share)) = (&mut among, &active.border, pass.verbs.scatter) {
-            among.exchange_windows(border, (&nodes, share), window_side(B::WIDTH));
+        if let (Some(among), Some(border), Some(share)) = (&mut among, border, pass.verbs.scatter) {
+            let came_here = (border, kept_windows, came);
+            came = among.add_windows(came_here, (&nodes, share), window_side(B::WIDTH));
         }
         self.among = among;
+        if sends_guests {
+            self.take_in_guests(&came);
+        }
         found
     }
 }

@@ -48,9 +48,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
         self.workspace.weights = parts;
-        if let Some(among) = &self.among {
-            among.ranks.add_up(&mut sums);
-        }
+        self.add_up(&mut sums);
         Some(Vector(sums.map(|sum| sum.value())))
     }
 

@@ -56,7 +56,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             set(body.particles.line_mut(first), |warmed| warmed.temperature);
             set(body.particles.line_mut(first + 1), |warmed| warmed.strain);
             let mut work = [room.iter().map(|warmed| warmed.work).sum::<ExactSum>()];
-            self.among.iter().for_each(|among| among.ranks.add_up(&mut work));
+            self.among.iter().for_each(|among| among.add_up(work.iter_mut()));
             sums.work += work[0].value();
             self.watch.lap("heat", start);
         }

@@ -5,13 +5,14 @@ use crate::basis::Basis;
 use crate::clock::{Fastest, fastest_signal};
 use crate::door::StepLimit;
 use crate::lanes::Laned;
+use crate::ranks::largest;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     pub(super) fn stable(&self) -> f64 {
         let fastest = || {
             let here = fastest_signal(&self.state.bodies).map_or(0.0, |fastest| fastest.speed);
-            self.among.as_ref().map_or(here, |among| among.ranks.largest(here))
+            self.among.as_ref().map_or(here, |among| largest(&*among.ranks, here))
         };
         let signal = self.state.signal.unwrap_or_else(fastest);
         self.step_of_signal(signal).min(self.longest_turn()).min(self.longest_whatever_moves())

@@ -225,6 +225,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
+    /// Of each point on a free rigid body, in the order of loads: the body, the force on it and where that acts [N, m].
+    pub(super) fn forces_on_free_bodies(&self) -> Vec<(usize, [f64; 3], [f64; 3])> {
+        let (room, loads, free) = (&self.workspace.loads, &self.settings.loads, &self.settings.free);
+        let points =
+            room.numbers.iter().zip(&room.points).zip(0..).filter_map(|((&[load, point], felt), number)| {
+                let load = &loads[load as usize];
+                let carrier = load.points[point as usize].particle;
+                let is_here = free[load.body] && room.places[load.body][carrier] != NOWHERE;
+                is_here.then(|| (number, (load.body, felt.felt.force.space(), felt.before.space())))
+            });
+        let mut points: Vec<(u32, (usize, [f64; 3], [f64; 3]))> = points.collect();
+        if let Some(among) = &self.among {
+            points = among.gathered(&points).concat();
+            points.sort_unstable_by_key(|(number, _)| *number);
+        }
+        points.into_iter().map(|(_, point)| point).collect()
+    }
+
     /// What acts on each point, and which nodes feel it.
     fn load_points(&mut self, dt: T, ahead: Option<T>) {
         let room = &mut self.workspace.loads;
@@ -406,18 +424,6 @@ impl<T, const D: usize> Default for LoadRoom<T, D> {
 }
 
 impl<T: Real, const D: usize> LoadRoom<T, D> {
-    /// Of each point on one of some bodies: the body, the force on it and where that acts [N, m].
-    pub fn forces_on<'a>(
-        &'a self,
-        loads: &'a [LoadPoints],
-        wanted: impl Fn(usize) -> bool + 'a,
-    ) -> impl Iterator<Item = (usize, [f64; 3], [f64; 3])> + 'a {
-        let felt = self.numbers.iter().zip(&self.points);
-        felt.map(|(&[load, _], point)| (loads[load as usize].body, point))
-            .filter(move |(body, _)| wanted(*body))
-            .map(|(body, point)| (body, point.felt.force.space(), point.before.space()))
-    }
-
     /// Forgets the last step, and has room for all points.
     fn begin(&mut self, loads: &[LoadPoints]) {
         for index in self.reached.drain(..) {

@@ -232,10 +232,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         // a loop.
         let weights = self.weigh();
         rayon::scope(|_| self.advance(T::of(dt)))?;
-        if let Some(fault) = self.among.as_mut().and_then(Among::first_fault) {
-            return Err(self.error(&fault));
-        }
-        self.book_sums();
+        self.end_step(T::of(dt)).map_err(|fault| self.error(&fault))?;
         self.book_gravity(T::of(dt), weights);
         self.count_disorder();
         self.relax();

@@ -167,9 +167,8 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub means: &'a [T],
     /// The tile's nodes.
     pub window: &'a mut Window<T, D>,
-    /// Where what it scatters is kept, for other ranks or until theirs has come, and its blocks that wait for that, a
-    /// bit each.
-    pub kept: (Option<&'a mut [NodeSums<T>]>, u8),
+    /// Where what it scatters is kept, of a tile that other ranks have to do with: it is added to the field later.
+    pub kept: Option<&'a mut [NodeSums<T>]>,
     /// The tile that is likely to come next.
     pub next: Option<&'a Tile<D>>,
     /// Which cells have particles that left them, from the lowest bit on.
@@ -223,12 +222,11 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     #[inline(always)]
     pub unsafe fn close<M: Machine<T>>(&mut self) {
         if self.pass.verbs.scatter.is_some() {
-            let (kept, waiting) = &mut self.kept;
-            if let Some(kept) = kept {
-                kept.copy_from_slice(&self.window.sums[..kept.len()]);
+            match &mut self.kept {
+                Some(kept) => kept.copy_from_slice(&self.window.sums[..kept.len()]),
+                // SAFETY: the caller's.
+                None => unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::WINDOW) },
             }
-            // SAFETY: the caller's.
-            unsafe { self.window.add_to::<M>(self.nodes, (self.tile, *waiting), Self::WINDOW) };
         }
     }
 }

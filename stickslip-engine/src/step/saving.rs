@@ -43,7 +43,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             gravity_work,
             relaxation,
             loads: self.state.loads.clone(),
-            contact_sums: self.state.contact_sums.clone(),
+            contact_sums: self.state.contact_sums.clone().in_order(),
             unbounded: self.state.unbounded.iter().map(Unbounded::saved).collect(),
             moved: self.settings.loads.iter().map(moved).collect(),
             joints: self.state.joints.clone(),

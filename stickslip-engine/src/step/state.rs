@@ -145,8 +145,8 @@ pub struct Workspace<T, const D: usize> {
     pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
-    /// Room for what pairs of bodies did in a use of contact.
-    pub touches: Vec<BlockSums>,
+    /// What pairs of bodies did in the step, use by use of contact.
+    pub touches: [Vec<BlockSums>; 3],
     /// Room for sums of mass times place over parts of a body's particles.
     pub weights: Vec<[ExactSum; D]>,
     /// Room for sums over the nodes of each block.
@@ -181,7 +181,7 @@ impl<T, const D: usize> Workspace<T, D> {
             displaced: Vec::new(),
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
-            touches: Vec::new(),
+            touches: Default::default(),
             weights: Vec::new(),
             block_sums: Vec::new(),
             totals: Mutex::new(None),

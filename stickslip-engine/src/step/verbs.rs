@@ -10,7 +10,7 @@ use super::state::{Disorder, Settings, Workspace};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::clock::signal_speed;
-use crate::contact::{ContactUse, Impulse, Near, Solve, TimeStep};
+use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Lattice, Node, locate, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
@@ -334,7 +334,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The first, second or third contact of a step, and what for.
     fn apply_contact(&mut self, duration: T, (number, purpose): (usize, ContactUse)) {
         let start = Instant::now();
-        let Workspace { impulses, survey, field, boundary, mechanism, .. } = &mut self.workspace;
+        let Workspace { impulses, survey, field, boundary, mechanism, active, .. } = &mut self.workspace;
         let (before, listed) = impulses.split_at_mut(number);
         let (given, listed) = ((number == 1).then(|| &before[0]), &mut listed[0]);
         let step = TimeStep { duration, cell: self.settings.lattice.cell, purpose };
@@ -348,7 +348,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 1 => (&self.settings.joints[..], Some(&self.settings.surfaces)),
                 _ => (&[][..], None),
             };
-            let coupling = Coupling { solve, lattice: &self.settings.lattice, joints, surfaces };
+            let ranks = self.among.as_ref().map(|among| &*among.ranks);
+            let lattice = &self.settings.lattice;
+            let coupling = Coupling { solve, lattice, joints, surfaces, active, ranks };
             let settled = coupling.settle(&mut self.state.bodies, mechanism, listed);
             self.state.contact_sums.unsettled += u64::from(!settled);
         }
@@ -357,13 +359,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let active = &self.workspace.active;
         let unsettled = listed.unsettled().filter(|&&node| active.books(locate(node).0)).count();
         self.workspace.sums.unsettled().add(unsettled as f64);
-        // What the others gave stands in the account of the step.
         if number == 2 {
-            let pushes = |impulse: &Impulse<T, D>| impulse.change.pushes();
-            let mut touches = std::mem::take(&mut self.workspace.touches);
-            self.list_touches(&mut touches, (&self.workspace.impulses[2], pushes), |_| [0.0; 2]);
-            self.state.contact_sums.count(&touches);
-            self.workspace.touches = touches;
+            self.count_pushes();
         }
         self.watch.lap("contact", start);
     }

@@ -80,7 +80,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Adds sums of all ranks up, where there are others.
     pub(in super::super) fn add_up(&self, sums: &mut [ExactSum]) {
         if let Some(among) = &self.among {
-            among.ranks.add_up(sums);
+            among.add_up(sums.iter_mut());
         }
     }
 }

@@ -12,13 +12,15 @@ use crate::contact::BlockSums;
 use crate::door::RankShare;
 use crate::exact::ExactSum;
 use crate::grid::{
-    ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, SentWindow, Tile,
-    add_corner, locate, nodes_per_block, window_side,
+    ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, Tile, Traffic, add_corner,
+    locate, nodes_per_block, window_side,
 };
 use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, number_of, write_number};
-use crate::ranks::{Message, Partition, Ranks, SentAndWaited, message_to};
+use crate::ranks::{
+    Message, Partition, Ranks, SentAndWaited, add_up, bytes_of, gathered, largest, message_to, read,
+};
 use crate::scene::{
     self, BasisKind, BodyMotion, ContactLaw, ContactRule, Face, Load, NamedMaterial, OutsideValue, Problem,
     Scene,
@@ -38,6 +40,10 @@ pub(super) struct Among<T> {
     pub ranks: Arc<dyn Ranks>,
     /// Who owns which block.
     partition: Partition,
+    /// Where each body began.
+    homes: Vec<Home>,
+    /// What others see of particles here in this step, until it is sent.
+    guests: Option<Vec<Message>>,
     /// The tiles that others have named, as they came.
     named: Vec<Message>,
     /// Passes over particles in the step so far.
@@ -58,6 +64,15 @@ pub(super) struct Among<T> {
     moves: bool,
 }
 
+/// Where a body began.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Home {
+    /// The rank that had its first particle.
+    pub rank: u32,
+    /// How many particles it had: one without bounds counts as larger than all others.
+    pub particles: usize,
+}
+
 /// What a rank did.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worked {
@@ -72,43 +87,66 @@ const COMPARED_EVERY: u64 = 16;
 const TOO_MUCH: f64 = 1.1;
 const LIGHTER: f64 = 0.95;
 
+impl Home {
+    /// That of a body which began there with so many particles, none if it has no bounds.
+    pub fn new(rank: usize, particles: usize) -> Self {
+        Home { rank: rank as u32, particles: if particles == 0 { usize::MAX } else { particles } }
+    }
+}
+
 impl<T: Real> Among<T> {
     /// Room for the windows of all tiles that are kept or come, so many nodes each.
-    pub fn make_room(&mut self, border: Option<&Border>, nodes: usize) -> &mut Vec<NodeSums<T>> {
+    pub fn take_room(&mut self, border: Option<&Border>, nodes: usize) -> Vec<NodeSums<T>> {
+        let mut windows = std::mem::take(&mut self.windows);
         let count = border.map_or(0, |border| border.kept.len() + border.foreign.len());
-        self.windows.resize(count * nodes, NodeSums::default());
-        &mut self.windows
+        windows.resize(count * nodes, NodeSums::default());
+        windows
     }
 
-    /// Sends the windows that others wait for, takes theirs, and adds them all to the slots at the border.
-    pub fn exchange_windows<const D: usize>(
-        &mut self,
-        border: &Border,
-        (nodes, share): (&Disjoint<Node<T, D>>, Share),
+    /// The windows that others wait for, and after the first pass of a step their guests.
+    ///
+    /// # Safety
+    /// Nobody may write to the windows meanwhile.
+    pub unsafe fn windows_for_others<const D: usize>(
+        (border, guests): (&Border, Option<Vec<Message>>),
+        (windows, share): (&Disjoint<NodeSums<T>>, Share),
         side: usize,
-    ) {
-        let each_window = side.pow(D as u32);
-        // What stands at a node of a window: momentum and force along each axis, and mass.
-        let momentum = (0..D).map(|axis| 2 * axis).filter(|_| share.has_momentum());
-        let force = (0..D).map(|axis| 2 * axis + 1).filter(|_| share.has_force());
-        let given: Vec<usize> = momentum.chain(force).chain(share.has_mass().then_some(6)).collect();
-        let message = |windows: &[SentWindow]| {
+    ) -> Vec<Message> {
+        let given = given::<D>(share);
+        let mut guests = guests.into_iter().flatten().peekable();
+        let message = |traffic: &Traffic| {
             let mut message = Vec::new();
-            for sent in windows {
-                let window = &self.windows[sent.place as usize * each_window..][..each_window];
+            for sent in &traffic.windows {
+                let first = sent.place as usize * side.pow(D as u32);
                 for node in sent.nodes::<D>(side) {
-                    let sums = window[node].as_flattened();
+                    // SAFETY: the caller's.
+                    let sums = unsafe { windows.read(first + node) }.as_flattened();
                     given.iter().for_each(|&i| write_number(sums[i], &mut message));
                 }
             }
-            message
+            message.extend(
+                guests.next_if(|(to, _)| *to == traffic.rank).into_iter().flat_map(|(_, guests)| guests),
+            );
+            (traffic.rank, message)
         };
-        let sent = border.outgoing.iter().map(|traffic| (traffic.rank, message(&traffic.windows)));
-        let came = self.ranks.exchange(sent.collect());
+        border.outgoing.iter().map(message).collect()
+    }
+
+    /// Takes the windows of others, adds those of all to the slots at the border, and says what came behind them.
+    pub fn add_windows<const D: usize>(
+        &mut self,
+        (border, windows, mut came): (&Border, Vec<NodeSums<T>>, Vec<Message>),
+        (nodes, share): (&Disjoint<Node<T, D>>, Share),
+        side: usize,
+    ) -> Vec<Message> {
+        self.windows = windows;
+        let each_window = side.pow(D as u32);
+        let given = given::<D>(share);
         let kept = border.kept.len();
-        assert_eq!(came.len(), border.incoming.len(), "who shares blocks sends windows");
-        for ((from, message), traffic) in came.iter().zip(&border.incoming) {
+        for ((from, message), traffic) in came.iter_mut().zip(&border.incoming) {
             assert_eq!(*from, traffic.rank, "who shares blocks sends windows");
+            let sums: usize = traffic.windows.iter().map(|sent| sent.nodes::<D>(side).count()).sum();
+            let behind = message.split_off(sums * given.len() * size_of::<T>());
             let mut numbers = message.chunks_exact(size_of::<T>()).map(number_of);
             for sent in &traffic.windows {
                 let window = &mut self.windows[(kept + sent.place as usize) * each_window..][..each_window];
@@ -118,7 +156,7 @@ impl<T: Real> Among<T> {
                     given.iter().zip(&mut numbers).for_each(|(&i, x)| sums[i] = x);
                 }
             }
-            assert!(numbers.next().is_none(), "ranks agree on what they share");
+            *message = behind;
         }
         let windows = &self.windows;
         each_range(border.slots.len(), SLOTS, &|range| {
@@ -130,7 +168,15 @@ impl<T: Real> Among<T> {
                 }
             }
         });
+        came
     }
+}
+
+/// What stands at a node of a window of those numbers: momentum and force along each axis, and mass.
+fn given<const D: usize>(share: Share) -> Vec<usize> {
+    let momentum = (0..D).map(|axis| 2 * axis).filter(|_| share.has_momentum());
+    let force = (0..D).map(|axis| 2 * axis + 1).filter(|_| share.has_force());
+    momentum.chain(force).chain(share.has_mass().then_some(6)).collect()
 }
 
 impl<T: Laned> Among<T> {
@@ -165,19 +211,53 @@ impl<T: Laned> Among<T> {
         }
     }
 
-    /// The first fault of the step on all ranks, by pass, body and particle.
-    pub fn first_fault(&mut self) -> Option<FaultReport> {
-        let own = self.fault.take();
-        let faults = self.gathered(&own).into_iter().flatten();
-        let first = faults.min_by_key(|(pass, fault)| (*pass, fault.body, fault.number));
-        first.map(|(_, fault)| fault)
+    /// What this rank found first in the step, and in which pass.
+    pub fn fault(&mut self) -> Option<(u32, FaultReport)> {
+        self.fault.take()
+    }
+
+    /// Whether this rank keeps the sums of a pair of bodies: that of the smaller one does.
+    pub fn keeps(&self, bodies: [usize; 2]) -> bool {
+        self.keeper(bodies) == self.ranks.rank()
+    }
+
+    fn keeper(&self, bodies: [usize; 2]) -> usize {
+        let [a, b] = bodies.map(|body| self.homes[body]);
+        let home = if b.particles < a.particles { b } else { a };
+        home.rank as usize
+    }
+
+    /// Leaves what pairs did in the uses of contact to those who keep their sums, ordered by pair and block.
+    pub fn send_to_keepers(&self, touches: &mut [Vec<BlockSums>; 3]) {
+        if self.homes.len() < 2 {
+            return;
+        }
+        let mut others: Vec<(usize, Vec<(u8, BlockSums)>)> = Vec::new();
+        for (number, touches) in (0..).zip(touches.iter_mut()) {
+            touches.retain(|touch| {
+                let keeper = self.keeper(touch.bodies);
+                if keeper != self.ranks.rank() {
+                    let place = others.iter().position(|(rank, _)| *rank == keeper).unwrap_or(others.len());
+                    if place == others.len() {
+                        others.push((keeper, Vec::new()));
+                    }
+                    others[place].1.push((number, *touch));
+                }
+                keeper == self.ranks.rank()
+            });
+        }
+        let messages = others.iter().map(|(rank, touches)| (*rank, bytes_of(touches))).collect();
+        for (_, message) in self.ranks.exchange(messages) {
+            for (number, touch) in read::<Vec<(u8, BlockSums)>>(&message) {
+                touches[usize::from(number)].push(touch);
+            }
+        }
+        touches.iter_mut().for_each(|touches| touches.sort_unstable_by_key(BlockSums::rank));
     }
 
     /// What each rank says, by rank.
     pub fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
-        let said = rmp_serde::to_vec(said).expect("memory takes what is written");
-        let all = self.ranks.gather(&said);
-        all.iter().map(|said| rmp_serde::from_slice(said).expect("ranks run the same program")).collect()
+        gathered(&*self.ranks, said)
     }
 
     /// What the particles of each body on all ranks add up to.
@@ -195,14 +275,6 @@ impl<T: Laned> Among<T> {
         sums.iter().map(TurningSums::spin::<D>).collect()
     }
 
-    /// Adds what pairs did on other ranks to what they did here, ordered by pair and block.
-    pub fn gather_touches(&self, touches: &mut Vec<BlockSums>) {
-        let all = self.gathered(touches);
-        touches.clear();
-        touches.extend(all.into_iter().flatten());
-        touches.sort_unstable_by_key(BlockSums::rank);
-    }
-
     /// Adds what bodies did to faces on other ranks.
     pub fn gather_walls(&self, booked: &mut WallBooks) {
         let places: Vec<usize> = booked.keys().copied().collect();
@@ -213,10 +285,10 @@ impl<T: Laned> Among<T> {
         self.add_up(booked.values_mut().flatten());
     }
 
-    fn add_up<'a>(&self, sums: impl Iterator<Item = &'a mut ExactSum>) {
+    pub fn add_up<'a>(&self, sums: impl Iterator<Item = &'a mut ExactSum>) {
         let places: Vec<&mut ExactSum> = sums.collect();
         let mut all: Vec<ExactSum> = places.iter().map(|sum| (**sum).clone()).collect();
-        self.ranks.add_up(&mut all);
+        add_up(&*self.ranks, &mut all);
         places.into_iter().zip(all).for_each(|(place, sum)| *place = sum);
     }
 }
@@ -234,7 +306,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 *loads.entry(self.block_of(particles, particle)).or_default() += 1;
             }
         }
-        self.join(ranks.clone(), Partition::balanced(ranks.count(), None, loads));
+        let partition = Partition::balanced(ranks.count(), None, loads);
+        let homes = self.state.bodies.iter().zip(&self.settings.filled).map(|(body, &filled)| {
+            let is_there = filled > 0 && body.particles.len() > 0;
+            let rank = if is_there { partition.owner(self.block_of(&body.particles, 0)) } else { 0 };
+            Home::new(rank, filled)
+        });
+        let homes = homes.collect();
+        self.join(ranks, (partition, homes));
+        let among = self.among.as_ref().expect("it has joined the others");
+        self.state.contact_sums.keep(|bodies| among.keeps(bodies));
         for body in 0..self.state.bodies.len() {
             let gone = self.of_other_ranks(&self.state.bodies[body].particles);
             let particles = &mut self.state.bodies[body].particles;
@@ -244,10 +325,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 
     /// Becomes one of several ranks, with its particles in its share of the blocks.
-    pub(super) fn join(&mut self, ranks: Arc<dyn Ranks>, partition: Partition) {
+    pub(super) fn join(&mut self, ranks: Arc<dyn Ranks>, (partition, homes): (Partition, Vec<Home>)) {
         self.among = Some(Among {
             ranks,
             partition,
+            homes,
+            guests: None,
             named: Vec::new(),
             passes: 0,
             fault: None,
@@ -274,7 +357,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Whether something is so on any rank.
     pub(super) fn on_any_rank(&self, here: bool) -> bool {
-        self.among.as_ref().map_or(here, |among| among.ranks.largest(f64::from(u8::from(here))) > 0.0)
+        self.among.as_ref().map_or(here, |among| largest(&*among.ranks, f64::from(u8::from(here))) > 0.0)
     }
 
     /// Which particles of a body are not in this rank's share, by their places in memory.
@@ -415,13 +498,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if changed { Blocks::New } else { Blocks::Same }
     }
 
-    /// Shows the particles around blocks where bodies meet to the other ranks that have tiles there, as their guests.
+    /// Writes down the particles around blocks where bodies meet for the other ranks that have tiles there, to be their
+    /// guests from the first pass on.
     pub(super) fn invite_guests(&mut self) {
-        let Some(among) = &self.among else { return };
+        let Some(among) = &mut self.among else { return };
         self.workspace.active.dismiss_guests();
         self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
         let active = &self.workspace.active;
-        let n = nodes_per_block(D);
         let (mut messages, mut guests) = (Vec::new(), Vec::new());
         for traffic in active.border.iter().flat_map(|border| &border.outgoing) {
             let mut message = Vec::new();
@@ -441,10 +524,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 messages.push((traffic.rank, message));
             }
         }
-        let came = among.ranks.exchange(messages);
+        among.guests = Some(messages);
+    }
+
+    /// What others are to see of particles here, if it is not sent yet.
+    pub(super) fn guests_to_send(&mut self) -> Option<Vec<Message>> {
+        self.among.as_mut().and_then(|among| among.guests.take())
+    }
+
+    /// Takes in the guests from other ranks.
+    pub(super) fn take_in_guests(&mut self, came: &[Message]) {
+        let n = nodes_per_block(D);
         // Body, home, particles in each cell, their bytes.
         let mut tiles: Vec<(usize, u64, Vec<usize>, &[u8])> = Vec::new();
-        for (_, message) in &came {
+        for (_, message) in came {
             let mut rest = &message[..];
             while let Some((body, after)) = split_number(rest)
                 && let Some((home, mut after)) = after.split_first_chunk()
@@ -486,14 +579,8 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
     };
     let by_function = |load: &Load| load.action.outside().and_then(OutsideValue::function).is_some();
     let refused = [
-        (
-            "bodies.rigid",
-            "a rigid body that forces move",
-            scene.bodies.iter().any(|body| body.as_free_rigid().is_some()),
-        ),
         ("bodies.rigid", "a function from outside", scene.bodies.iter().any(moves_by_function)),
         ("loads", "a function from outside", scene.loads.iter().any(by_function)),
-        ("joints", "a joint", !scene.joints.is_empty()),
         ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
         ("contact", "`regression` with linear functions", scene.contact.iter().any(regression)),
     ];

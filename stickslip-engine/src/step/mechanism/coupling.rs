@@ -9,9 +9,11 @@ use super::touch::{Touch, TouchForce};
 use super::{FreeBody, Mechanism, slot};
 use crate::body::Body;
 use crate::contact::{Impulses, Solve, Span};
-use crate::grid::Lattice;
+use crate::grid::{ActiveBlocks, Lattice, locate};
+use crate::ranks::{Ranks, gathered, largest};
 use crate::scene::Joint;
 use crate::tensor::{Real, Vector};
+use serde::{Deserialize, Serialize};
 
 /// A use of contact in which free rigid bodies take part.
 ///
@@ -31,6 +33,21 @@ pub struct Coupling<'a, T, const D: usize> {
     /// The joints that hold in this use, and whether rigid bodies push on each other in it.
     pub joints: &'a [Joint],
     pub surfaces: Option<&'a RigidSurfaces>,
+    /// The blocks, and the ranks that share them, if there are any. All of them have all free bodies.
+    pub active: &'a ActiveBlocks<D>,
+    pub ranks: Option<&'a dyn Ranks>,
+}
+
+/// What contact does to a free body at the nodes of a block. Each rank adds up its blocks, and all of them the sums of
+/// these in one order: so it does not matter who has which block.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct BlockPush {
+    /// Place of the body in the mechanism, and the block; in the plane its third place is 0.
+    body: usize,
+    block: [i32; 3],
+    /// J of the block's nodes, and their part of A.
+    impulse: Six,
+    matrix: SixMatrix,
 }
 
 /// Searches for contacts of rigid bodies at most, and how much faster than it was looked ahead for a body may become.
@@ -58,6 +75,15 @@ struct TouchedNode {
     arm: [f64; 3],
 }
 
+/// Where contact may push free bodies.
+struct Touched {
+    nodes: Vec<TouchedNode>,
+    /// Which parts of the survey have any.
+    parts: Vec<bool>,
+    /// Whether any rank has one.
+    anywhere: bool,
+}
+
 impl<T: Real, const D: usize> Coupling<'_, T, D> {
     /// Finds the velocities of free bodies and the impulses at the nodes, lists these and applies both; says whether
     /// velocities came to rest.
@@ -73,7 +99,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             let state = state.expect("it is free").state;
             free.target = join(state.momentum, state.angular_momentum);
         }
-        let (touched, parts) = self.touched(bodies, &mechanism.bodies);
+        let touched = self.touched(bodies, &mechanism.bodies);
         self.find_rows(mechanism, dt);
         let mut settled = false;
         for _ in 0..MAX_SEARCHES {
@@ -84,7 +110,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
                 motion.set_momenta(six::parts(free.target), dt);
             }
-            settled = self.iterate(bodies, mechanism, (&touched, &parts), listed);
+            settled = self.iterate(bodies, mechanism, &touched, listed);
             // Joints and impacts may have made a body faster than it was looked ahead for.
             let outran = |(free, sought): (&FreeBody, &f64)| free.speed(bodies) > FASTER * sought;
             if mechanism.touches.is_empty() && self.surfaces.is_none()
@@ -100,8 +126,8 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 mechanism.before = mechanism.touches.iter().filter_map(|touch| touch.force(dt)).collect();
             }
         }
-        self.finish(bodies, mechanism, (&parts, listed));
-        self.move_nodes(bodies, (&mechanism.bodies, &touched));
+        self.finish(bodies, mechanism, (&touched, listed));
+        self.move_nodes(bodies, (&mechanism.bodies, &touched.nodes));
         self.solve.apply(listed);
         settled
     }
@@ -112,7 +138,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         &self,
         bodies: &mut [Body<T, D>],
         mechanism: &mut Mechanism,
-        (touched, parts): (&[TouchedNode], &[bool]),
+        touched: &Touched,
         listed: &mut Impulses<T, D>,
     ) -> bool {
         let dt = self.solve.step.duration.f64();
@@ -124,12 +150,12 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let round_off = ROUND_OFF * f64::EPSILON * far.fold(0.0, f64::max) / dt;
         let placed = !(self.joints.is_empty() && mechanism.touches.is_empty());
         let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
-        let alone = packed(mechanism.touches.len()) && touched.is_empty() && mechanism.rows.is_empty();
+        let alone = packed(mechanism.touches.len()) && !touched.anywhere && mechanism.rows.is_empty();
         let mut first = 0.0;
         for round in 0..MAX_ROUNDS {
-            self.move_nodes(bodies, (&mechanism.bodies, touched));
-            self.solve.list(|part| round == 0 || parts[part], listed);
-            let (impulses, nodes) = self.sum((parts, listed), (bodies, &mechanism.bodies), round >= SURE);
+            self.move_nodes(bodies, (&mechanism.bodies, &touched.nodes));
+            self.solve.list(|part| round == 0 || touched.parts[part], listed);
+            let (impulses, nodes) = self.sum((touched, listed), (bodies, &mechanism.bodies), round >= SURE);
             let factors: Vec<SixFactor> = nodes.iter().map(SixMatrix::factor).collect();
             let missing = |(i, free): (usize, &FreeBody)| {
                 let missing = std::array::from_fn(|k| free.target[k] - free.momenta[k] + impulses[i][k]);
@@ -163,21 +189,23 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         false
     }
 
-    /// Nodes of free bodies where others are, and which parts of the survey have any.
-    fn touched(&self, bodies: &[Body<T, D>], free: &[FreeBody]) -> (Vec<TouchedNode>, Vec<bool>) {
-        let (mut touched, mut parts) = (Vec::new(), Vec::new());
+    /// Nodes of free bodies where others are.
+    fn touched(&self, bodies: &[Body<T, D>], free: &[FreeBody]) -> Touched {
+        let (mut nodes, mut parts) = (Vec::new(), Vec::new());
         for part in self.solve.survey.parts() {
-            let before = touched.len();
+            let before = nodes.len();
             for site in &part.sites {
                 for side in &part.sides[site.sides.clone()] {
                     let Ok(body) = free.binary_search_by_key(&side.body, |free| free.index) else { continue };
                     let arm = arm(self.lattice, site.node, &bodies[side.body]);
-                    touched.push(TouchedNode { body, index: side.index, arm });
+                    nodes.push(TouchedNode { body, index: side.index, arm });
                 }
             }
-            parts.push(touched.len() > before);
+            parts.push(nodes.len() > before);
         }
-        (touched, parts)
+        let here = f64::from(u8::from(!nodes.is_empty()));
+        let anywhere = self.ranks.map_or(here, |ranks| largest(ranks, here)) > 0.0;
+        Touched { nodes, parts, anywhere }
     }
 
     /// Gives nodes the velocities that free bodies have there.
@@ -193,45 +221,83 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
     /// Impulses of contact on the free bodies, and M + A of each.
     fn sum(
         &self,
-        (parts, listed): (&[bool], &Impulses<T, D>),
+        (touched, listed): (&Touched, &Impulses<T, D>),
         (bodies, free): (&[Body<T, D>], &[FreeBody]),
         sure: bool,
     ) -> (Vec<Six>, Vec<SixMatrix>) {
         let mut impulses = vec![[0.0; 6]; free.len()];
         let mut matrices: Vec<SixMatrix> = free.iter().map(|free| free.inertia).collect();
-        for (number, part) in self.solve.survey.parts().iter().enumerate().filter(|(i, _)| parts[*i]) {
-            for (impulse, encounter) in listed.of(number).iter().zip(&part.encounters) {
-                if !self.counts(impulse.span) {
-                    continue;
-                }
-                for side in 0..2 {
-                    let index = impulse.bodies[side];
-                    let Ok(body) = free.binary_search_by_key(&index, |free| free.index) else { continue };
-                    let given = impulse.change.impulse[side].space();
-                    if given == [0.0; 3] {
-                        continue;
-                    }
-                    let arm = arm(self.lattice, impulse.node, &bodies[index]);
-                    six::add(&mut impulses[body], 1.0, &at(arm, given));
-                    let other = &part.sides[encounter.sides[1 - side]].surface;
-                    if other.is_rigid() {
-                        continue;
-                    }
-                    let mass = 1.0 / other.inverse_mass.f64();
-                    let slip = self.slip(impulse.nodes, encounter.normal());
-                    let held = mass * slip * STICKING;
-                    let sticks = sure || impulse.change.tangential.norm().f64() >= held;
-                    match encounter.normal().filter(|_| !sticks) {
-                        Some(n) => matrices[body].add(mass, &at(arm, n.space())),
-                        None => (0..D).for_each(|k| {
-                            let axis = std::array::from_fn(|i| f64::from(u8::from(i == k)));
-                            matrices[body].add(mass, &at(arm, axis));
-                        }),
-                    }
-                }
+        if touched.anywhere {
+            let mut pushes = self.pushes((touched, listed), (bodies, free), sure);
+            if let Some(ranks) = self.ranks {
+                pushes = gathered(ranks, &pushes).concat();
+            }
+            pushes.sort_unstable_by_key(|push| (push.body, push.block));
+            for BlockPush { body, impulse, matrix, .. } in &pushes {
+                six::add(&mut impulses[*body], 1.0, impulse);
+                matrices[*body].add_all(matrix);
             }
         }
         (impulses, matrices)
+    }
+
+    /// What contact does to free bodies at the nodes of the blocks that this rank books; those of a block follow one
+    /// another.
+    fn pushes(
+        &self,
+        (touched, listed): (&Touched, &Impulses<T, D>),
+        (bodies, free): (&[Body<T, D>], &[FreeBody]),
+        sure: bool,
+    ) -> Vec<BlockPush> {
+        let mut pushes: Vec<BlockPush> = Vec::new();
+        // Where those of the block at hand begin.
+        let (mut first, mut last) = (0, None);
+        let parts = self.solve.survey.parts().iter().enumerate().filter(|(i, _)| touched.parts[*i]);
+        for (impulse, encounter, part) in parts.flat_map(|(number, part)| {
+            let encounters = listed.of(number).iter().zip(&part.encounters);
+            encounters.map(move |(impulse, encounter)| (impulse, encounter, part))
+        }) {
+            let (block, _) = locate(impulse.node);
+            if !self.counts(impulse.span) || !self.active.books(block) {
+                continue;
+            }
+            if last != Some(block) {
+                (first, last) = (pushes.len(), Some(block));
+            }
+            for side in 0..2 {
+                let index = impulse.bodies[side];
+                let Some(body) = slot(free, index) else { continue };
+                let given = impulse.change.impulse[side].space();
+                if given == [0.0; 3] {
+                    continue;
+                }
+                let here = pushes[first..].iter().position(|push| push.body == body);
+                let place = here.map_or(pushes.len(), |here| first + here);
+                if place == pushes.len() {
+                    let block = std::array::from_fn(|i| if i < D { block[i] } else { 0 });
+                    let (impulse, matrix) = ([0.0; 6], SixMatrix::default());
+                    pushes.push(BlockPush { body, block, impulse, matrix });
+                }
+                let BlockPush { impulse: sum, matrix, .. } = &mut pushes[place];
+                let arm = arm(self.lattice, impulse.node, &bodies[index]);
+                six::add(sum, 1.0, &at(arm, given));
+                let other = &part.sides[encounter.sides[1 - side]].surface;
+                if other.is_rigid() {
+                    continue;
+                }
+                let mass = 1.0 / other.inverse_mass.f64();
+                let held = mass * self.slip(impulse.nodes, encounter.normal()) * STICKING;
+                let sticks = sure || impulse.change.tangential.norm().f64() >= held;
+                match encounter.normal().filter(|_| !sticks) {
+                    Some(n) => matrix.add(mass, &at(arm, n.space())),
+                    None => (0..D).for_each(|k| {
+                        let axis = std::array::from_fn(|i| f64::from(u8::from(i == k)));
+                        matrix.add(mass, &at(arm, axis));
+                    }),
+                }
+            }
+        }
+        pushes
     }
 
     /// How fast two bodies slip at their nodes before contact [m/s].
@@ -343,10 +409,10 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         &self,
         bodies: &mut [Body<T, D>],
         mechanism: &mut Mechanism,
-        (parts, listed): (&[bool], &Impulses<T, D>),
+        (touched, listed): (&Touched, &Impulses<T, D>),
     ) {
         let dt = self.solve.step.duration.f64();
-        let (impulses, _) = self.sum((parts, listed), (bodies, &mechanism.bodies), true);
+        let (impulses, _) = self.sum((touched, listed), (bodies, &mechanism.bodies), true);
         for (free, impulse) in mechanism.bodies.iter_mut().zip(&impulses) {
             free.momenta = free.target;
             six::add(&mut free.momenta, 1.0, impulse);

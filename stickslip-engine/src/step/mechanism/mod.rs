@@ -27,6 +27,7 @@ pub use surfaces::RigidSurfaces;
 use super::Engine;
 use crate::basis::Basis;
 use crate::body::Body;
+use crate::contact::RigidTouch;
 use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
 use crate::scene::{JointKind, Motor};
@@ -56,6 +57,8 @@ pub struct Mechanism {
     touches: Vec<Touch>,
     /// What they pushed each other with in the step before, in the order of pairs.
     before: Vec<TouchForce>,
+    /// What they did to each other in the step.
+    booked: Vec<RigidTouch>,
     /// When the step began [s].
     time: f64,
     /// Magnitude of gravity [m/s^2].
@@ -88,6 +91,11 @@ impl Mechanism {
     /// The place of a body among the free ones.
     fn slot(&self, body: usize) -> Option<usize> {
         slot(&self.bodies, body)
+    }
+
+    /// What rigid bodies did to each other in the step, once that was accounted for.
+    pub fn booked(&self) -> &[RigidTouch] {
+        &self.booked
     }
 
     /// How fast a unit impulse along a direction at an arm makes a free body there along it [1/kg]; not at all what is
@@ -178,18 +186,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let start = Instant::now();
         let gravity = self.gravity(dt).space();
+        let forces = if self.settings.loads.is_empty() { Vec::new() } else { self.forces_on_free_bodies() };
         let mechanism = &mut self.workspace.mechanism;
         let (dt, time) = (dt.f64(), self.state.time);
-        let (free, bodies) = (&self.settings.free, &mut self.state.bodies);
+        let bodies = &mut self.state.bodies;
         let mut impulses = vec![[0.0; 6]; mechanism.bodies.len()];
         let slot = |body: usize| slot(&mechanism.bodies, body);
-        if !self.settings.loads.is_empty() {
-            let forces = self.workspace.loads.forces_on(&self.settings.loads, |body| free[body]);
-            for (body, force, place) in forces {
-                let (Some(slot), Some(motion)) = (slot(body), &bodies[body].motion) else { continue };
-                let arm = (Vector(place) - Vector(motion.center)).0;
-                six::add(&mut impulses[slot], dt, &six::at(arm, force));
-            }
+        for (body, force, place) in forces {
+            let (Some(slot), Some(motion)) = (slot(body), &bodies[body].motion) else { continue };
+            let arm = (Vector(place) - Vector(motion.center)).0;
+            six::add(&mut impulses[slot], dt, &six::at(arm, force));
         }
         for (i, joint) in self.settings.joints.iter().enumerate() {
             let sums = &self.state.joints[i];
@@ -243,10 +249,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Books what joints and the contacts of rigid bodies did in the step, once velocities are known. Works are those of
     /// impulses on the mean of the velocities before and after, which is what they change of the kinetic energy.
     pub(super) fn account_mechanism(&mut self, dt: T) {
-        let mechanism = &self.workspace.mechanism;
+        let mechanism = &mut self.workspace.mechanism;
+        mechanism.booked.clear();
         if mechanism.bodies.is_empty() {
             return;
         }
+        let mut booked = std::mem::take(&mut mechanism.booked);
+        let mechanism = &*mechanism;
         let bodies = &self.state.bodies;
         let mean = |body: usize| {
             let motion = bodies[body].motion.as_ref().expect("joints and these contacts are of rigid bodies");
@@ -274,7 +283,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let prescribed = (0..2).filter(|side| row.bodies[*side].is_none());
                 work -= prescribed.map(|side| works(row)[side]).sum::<f64>();
             }
-            self.state.contact_sums.touch(&touch.sum(rubbed), dt.f64());
+            booked.push(touch.sum(rubbed));
         }
         self.state.contact_sums.work += work;
         for (i, joint) in self.settings.joints.iter().enumerate() {
@@ -285,6 +294,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             });
             sums.measure(joint, bodies, dt.f64());
         }
+        self.workspace.mechanism.booked = booked;
     }
 }
 

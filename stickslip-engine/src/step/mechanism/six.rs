@@ -1,6 +1,7 @@
 //! Six numbers of a rigid body: velocity and angular velocity, or momentum and angular momentum about its centre.
 
 use crate::tensor::{Matrix, cross};
+use serde::{Deserialize, Serialize};
 
 /// Velocity [m/s] and then angular velocity [rad/s] of a rigid body; or impulses, or what an impulse does per unit.
 pub type Six = [f64; 6];
@@ -30,7 +31,7 @@ pub fn add(a: &mut Six, factor: f64, b: &Six) {
 }
 
 /// A symmetric positive definite matrix of six by six.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct SixMatrix([Six; 6]);
 
 impl SixMatrix {
@@ -51,6 +52,11 @@ impl SixMatrix {
         for (row, gi) in self.0.iter_mut().zip(g) {
             add(row, factor * gi, g);
         }
+    }
+
+    /// Adds another one.
+    pub fn add_all(&mut self, other: &SixMatrix) {
+        self.0.iter_mut().zip(&other.0).for_each(|(row, others)| add(row, 1.0, others));
     }
 
     pub fn times(&self, x: &Six) -> Six {
