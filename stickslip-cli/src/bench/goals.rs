@@ -3,6 +3,7 @@
 use super::on_ranks::OnRanks;
 use super::problems::{BLOCKS_APART, BLOCKS_IN_CONTACT};
 use super::record::{EndToEnd, Measured, PeerResult, median};
+use super::scaling::{CLUSTER, StepModel};
 use serde::Serialize;
 
 /// A number that is to be so large or so small.
@@ -41,6 +42,8 @@ pub struct Findings<'a> {
     pub end_to_end: &'a [EndToEnd],
     /// Problem P7.
     pub on_ranks: &'a [OnRanks],
+    /// The models that were fitted to it.
+    pub models: &'a [StepModel],
     /// Other programs.
     pub peers: &'a [PeerResult],
 }
@@ -127,6 +130,11 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
     for shared in findings.on_ranks.iter().filter(|shared| shared.ranks == 2) {
         let name = format!("P7 {}: speed of two ranks over that of two threads", shared.problem);
         goals.push(goal(&name, Some(shared.speed), (AtLeast, 0.9, None)));
+    }
+    for model in findings.models {
+        let name =
+            format!("P7 {}: part of borders in a step, 10^6 particles a rank, by the model", model.problem);
+        goals.push(goal(&name, Some(model.halo(1e6, CLUSTER)), (AtMost, 0.05, None)));
     }
     for peer in findings.peers.iter().filter(|peer| peer.basis == "linear") {
         let least = match peer.program.as_str() {
@@ -270,7 +278,8 @@ mod tests {
             first_step: 0.0,
         };
         let peers = [peer("Warp", 10e6), peer("Taichi", 4e6), peer("Taichi, serial", 9e6)];
-        let goals = goals(Findings { results: &results, end_to_end: &[], on_ranks: &[], peers: &peers });
+        let goals =
+            goals(Findings { results: &results, end_to_end: &[], on_ranks: &[], models: &[], peers: &peers });
 
         assert_eq!(value(&goals, "P1 linear f64, M"), Some((20.0, true)));
         assert_eq!(value(&goals, "P1 GIMP"), Some((8.0, false)));

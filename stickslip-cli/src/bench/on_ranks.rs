@@ -21,6 +21,8 @@ pub struct OnRanks {
     pub ranks: usize,
     /// Particles.
     pub particles: usize,
+    /// Bodies.
+    pub bodies: usize,
     /// Wall time of a step by one process of as many threads, repetition by repetition [s].
     pub threads: Vec<f64>,
     /// Wall time of a step by the ranks likewise [s].
@@ -33,6 +35,8 @@ pub struct OnRanks {
     pub modelled: f64,
     /// In so many messages.
     pub messages: f64,
+    /// Time in which a rank computed in a step, the mean over ranks [s].
+    pub computed: f64,
     /// Part of the time in steps in which ranks waited, the mean over ranks.
     pub waiting: f64,
     /// Time in which the slowest rank computed over the mean.
@@ -65,7 +69,7 @@ impl OnRanks {
         let problem = case.label();
         tell!("P7 {problem}, {ranks} ranks ...");
         let (mut threads, mut seconds, mut shares) = (Vec::new(), Vec::new(), Vec::new());
-        let mut particles = 0;
+        let (mut particles, mut bodies) = (0, 0);
         for _ in 0..turns {
             let order = |task: BenchTask, threads: usize| Order {
                 scene: case.scene.clone(),
@@ -85,7 +89,7 @@ impl OnRanks {
             let each = |all: &[f64]| all.iter().map(|time| time / alone.steps as f64).collect::<Vec<_>>();
             threads.extend(each(&alone.repetitions));
             seconds.extend(each(&shared.repetitions));
-            (particles, shares) = (shared.particles, shared.shares);
+            (particles, bodies, shares) = (shared.particles, shared.bodies, shared.shares);
         }
         let mean = |of: &dyn Fn(&RankShare) -> f64| shares.iter().map(of).sum::<f64>() / ranks as f64;
         let computed = mean(&|share| share.computed);
@@ -94,12 +98,14 @@ impl OnRanks {
         Ok(OnRanks {
             ranks,
             particles,
+            bodies,
             speed: median(&threads) / median(&seconds),
             threads,
             seconds,
             bytes: mean(&|share| share.traffic.bytes as f64 / steps(share)),
             modelled: case.scheme.halo(particles, ranks),
             messages: mean(&|share| share.traffic.messages as f64 / steps(share)),
+            computed: mean(&|share| share.computed / steps(share)),
             waiting: mean(&|share| {
                 let waited = share.traffic.waited;
                 waited / (waited + share.computed).max(f64::MIN_POSITIVE)
@@ -108,6 +114,44 @@ impl OnRanks {
             problem,
         })
     }
+}
+
+/// Grains of eight particles in a row of layers, far enough apart to have nothing to do with each other.
+const GRAINS: &str = r#"
+[space]
+dimension = "3d"
+cell = 1
+basis = "linear"
+[time]
+end = 1
+[parameters]
+layers = 16
+[materials]
+sand = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
+[[bodies]]
+name = "grain {i} {j} {k}"
+repeat = { i = "layers", j = 16, k = 16 }
+material = "sand"
+shape.box = { min = ["4 * i", "4 * j", "4 * k"], max = ["4 * i + 1", "4 * j + 1", "4 * k + 1"] }
+"#;
+
+/// What computing a step takes for a body that another rank has: of two ranks with as many bodies each, against one
+/// that is alone with its own [s].
+///
+/// # Errors
+/// A measurement fails.
+pub fn body_elsewhere(effort: Effort, extent: BenchExtent) -> Result<f64, Failure> {
+    tell!("P7 bodies that are elsewhere ...");
+    let layers = if extent == BenchExtent::Tiny { 2 } else { 16 };
+    let computed = |ranks: usize| -> Result<(f64, usize), Failure> {
+        let overrides = vec![("layers".to_owned(), (layers * ranks).to_string())];
+        let task = BenchTask::Ranks(effort, ranks);
+        let found = Order { scene: GRAINS.to_owned(), overrides, threads: 1, task }.measure()?;
+        let each = found.shares.iter().map(|share| share.computed / share.steps.max(1) as f64);
+        Ok((each.sum::<f64>() / ranks as f64, found.bodies))
+    };
+    let ((alone, own), (two, all)) = (computed(1)?, computed(2)?);
+    Ok(((two - alone) / (all - own) as f64).max(0.0))
 }
 
 #[cfg(test)]

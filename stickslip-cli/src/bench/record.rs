@@ -5,6 +5,7 @@ use super::limits::Limits;
 use super::measure::BenchSample;
 use super::on_ranks::OnRanks;
 use super::problems::BenchCase;
+use super::scaling::StepModel;
 use serde::{Deserialize, Serialize};
 
 /// Everything that one call of `stickslip bench` found.
@@ -26,6 +27,8 @@ pub struct BenchRecord {
     pub end_to_end: Vec<EndToEnd>,
     /// Problem P7.
     pub on_ranks: Vec<OnRanks>,
+    /// What a step of these takes by the model that was fitted to them.
+    pub models: Vec<StepModel>,
     /// Other programs on problem P1.
     pub peers: Vec<PeerResult>,
     /// Ratios, and what they are to be.

@@ -2,6 +2,7 @@
 
 use super::goals::{Goal, Sense};
 use super::record::{BenchRecord, Computer, Measured, median};
+use super::scaling::CLUSTER;
 use std::fmt::{Display, Formatter, Result, Write};
 
 impl Display for BenchRecord {
@@ -176,9 +177,35 @@ impl BenchRecord {
                 format!("{:.2}", shared.imbalance),
             ]);
         }
+        let mut models = TextTable::new(&[
+            "<model",
+            "ns a particle",
+            "ns a byte",
+            "ns a body",
+            "100 ranks",
+            "1000",
+            "10000",
+            "borders",
+        ]);
+        for model in &self.models {
+            let one = model.step(1.0, 1e6, CLUSTER).sum();
+            let weak = |ranks: f64| percent(one / model.step(ranks, 1e6, CLUSTER).sum());
+            models.row([
+                model.problem.clone(),
+                format!("{:.1}", 1e9 * model.particle),
+                format!("{:.2}", 1e9 * model.byte),
+                format!("{:.1}", 1e9 * model.body),
+                weak(100.0),
+                weak(1e3),
+                weak(1e4),
+                percent(model.halo(1e6, CLUSTER)),
+            ]);
+        }
         format!(
             "P7, a step by ranks of one thread against as many threads of one process, with the same bits; what a rank \
-             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\n"
+             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\nBy the model of a step, {}: efficiency with 10^6 particles a rank, and the \
+             part of borders in a step.\n{models}\n",
+            CLUSTER.name
         )
     }
 

@@ -10,6 +10,7 @@ use super::on_ranks::{self, OnRanks};
 use super::peers::Peers;
 use super::problems::{BenchCase, BenchExtent, cases};
 use super::record::{BenchRecord, Computer, Measured, Skipped};
+use super::scaling::StepModel;
 use crate::failure::Failure;
 use crate::files;
 use crate::tell::tell;
@@ -55,6 +56,7 @@ impl BenchSuite {
             skipped: Vec::new(),
             end_to_end: Vec::new(),
             on_ranks: Vec::new(),
+            models: Vec::new(),
             peers: Vec::new(),
             goals: Vec::new(),
         };
@@ -74,9 +76,12 @@ impl BenchSuite {
             }
         }
         if self.wants("P7") {
+            let body = on_ranks::body_elsewhere(self.effort(), self.extent)?;
             for case in on_ranks::problems(self.extent) {
                 let turns = if self.extent == BenchExtent::Tiny { 1 } else { TURNS_ON_RANKS };
-                record.on_ranks.extend(OnRanks::measure(&case, self.effort(), turns)?);
+                let measured = OnRanks::measure(&case, self.effort(), turns)?;
+                record.models.extend(StepModel::fit(&measured, case.scheme, body));
+                record.on_ranks.extend(measured);
             }
         }
         if let Some((peers, python)) = self.peers.as_ref().zip(python) {
@@ -86,6 +91,7 @@ impl BenchSuite {
             results: &record.results,
             end_to_end: &record.end_to_end,
             on_ranks: &record.on_ranks,
+            models: &record.models,
             peers: &record.peers,
         };
         record.goals = goals(findings);

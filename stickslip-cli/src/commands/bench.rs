@@ -1,7 +1,8 @@
 //! `stickslip bench`: how fast the program is, and how fast this machine could be.
 
 use super::say;
-use crate::bench::{BenchExtent, BenchSuite, PROBLEMS, Peers, answer, write_scenes};
+use crate::bench::{BenchExtent, BenchSuite, CLUSTER, PROBLEMS, Peers, answer, scaling_chart, write_scenes};
+use crate::chart::draw;
 use crate::failure::Failure;
 use crate::files;
 use clap::Args;
@@ -25,6 +26,11 @@ pub struct Arguments {
     /// Write what was found to this file, too.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+
+    /// Draw to this file how a step would scale to many ranks by the model that problem P7 is fitted with: SVG, PNG or
+    /// PDF.
+    #[arg(long, value_name = "FILE")]
+    draw: Option<PathBuf>,
 
     /// Run problem P1 with Taichi and NVIDIA Warp, too; needs Python 3 and installs both from the Python package index.
     #[arg(long)]
@@ -85,6 +91,11 @@ impl Arguments {
         }
         let record = suite.run()?;
         say(&record.to_string())?;
+        if let Some(file) = &self.draw {
+            let chart = scaling_chart(&record.models, CLUSTER);
+            draw(&chart, file, chart.size())?;
+            say(&format!("{} is written", file.display()))?;
+        }
         let Some(file) = self.json else { return Ok(()) };
         let text = serde_json::to_string_pretty(&record).expect("a record is plain data") + "\n";
         files::write(&file, files::MEASUREMENTS, |file| file.write_all(text.as_bytes()))

@@ -6,7 +6,7 @@
 
 use super::border::{Border, ForeignTile, Mirrors, Traffic};
 use super::cell_list::{CellList, GuestList, block_of, corner_block, key, reached_blocks};
-use super::{Periods, cells_at, locate, nodes_per_block};
+use super::{Nodes, Periods, cells_at, cells_reaching, locate, nodes_per_block};
 use crate::ranks::{Message, message_to};
 use crate::threads::each;
 use std::ops::Range;
@@ -478,7 +478,7 @@ impl<const D: usize> ActiveBlocks<D> {
                 end: self.shared.len(),
             });
             if let Some(border) = &mut self.border {
-                border.shared.push(group[0].0);
+                border.shared.push((group[0].0, [start as u32, self.shared.len() as u32]));
             }
         }
         // By first body: its particles stay in the cache from block to block.
@@ -491,24 +491,34 @@ impl<const D: usize> ActiveBlocks<D> {
         &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
-    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach
-    /// nodes which the other rank has, in blocks where bodies meet. `side`: that of windows.
+    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach nodes
+    /// which the other rank has and several bodies have mass at. `present`: the nodes of each slot with mass, `side`:
+    /// that of windows.
     pub fn seen_by<'a>(
         &'a self,
         traffic: &'a Traffic,
+        present: &'a [Nodes],
         side: usize,
     ) -> impl Iterator<Item = (&'a Tile<D>, u64)> {
         let border = self.border.as_deref().into_iter();
         border.flat_map(move |border| {
             traffic.windows.iter().filter_map(move |window| {
                 let tile = &self.tiles[border.kept[window.place as usize] as usize];
-                let meets = |corner: &usize| {
-                    let block = self.periods.wrapped(corner_block(tile.block, *corner));
-                    window.corners >> corner & 1 == 1 && border.is_shared(key(block))
+                let seen = |corner: usize| {
+                    let block = self.periods.wrapped(corner_block(tile.block, corner));
+                    let Some(slots) = border.slots_of(key(block)) else { return 0 };
+                    let part = (corner, window.cuts[corner]);
+                    // Images of nodes near mirrors look at others.
+                    if self.mirrors.are_near(block) {
+                        return cells_at::<D>(corner, window.cuts[corner], side);
+                    }
+                    let nodes = self.shared[slots].iter().map(|&slot| present[slot as usize]);
+                    let [_, several] =
+                        nodes.fold([0, 0], |[once, twice], nodes| [once | nodes, twice | once & nodes]);
+                    cells_reaching::<D>(several, part, side)
                 };
-                let cells = (0..1 << D)
-                    .filter(meets)
-                    .fold(0, |cells, corner| cells | cells_at::<D>(corner, window.cuts[corner], side));
+                let corners = (0..1 << D).filter(|corner| window.corners >> corner & 1 == 1);
+                let cells = corners.fold(0, |cells, corner| cells | seen(corner));
                 (cells != 0).then_some((tile, cells))
             })
         })

@@ -6,7 +6,7 @@
 //!
 //! Of a block that a rank reaches only from blocks before it, it has the first layers of nodes right, as far as its
 //! tiles reach, and the others nobody asks for: if a tile has its home there, the tile's rank has the whole block.
-//! Blocks that are nobody's home are whole wherever they are held, and so are all where there are mirrors.
+//! Blocks that are nobody's home are whole wherever they are held, and so are those near mirrors.
 
 use super::cell_list::{CellList, CornerBlocks, block_of, corner_block, key, reached_blocks};
 use super::{Periods, SIDE, Tile, nodes_at};
@@ -114,8 +114,8 @@ pub struct Border {
     pub(super) near: Vec<[u32; 2]>,
     /// Of each home block, the other ranks that may have to do with tiles there, as far as it is known.
     pub(super) ranks_near: HashMap<u64, Box<[u32]>>,
-    /// Blocks that several bodies hold, sorted.
-    pub(super) shared: Vec<u64>,
+    /// Blocks that several bodies hold, sorted, and where their slots are in [`super::ActiveBlocks`].
+    pub(super) shared: Vec<(u64, [u32; 2])>,
     /// Blocks of those tiles, sorted.
     held: Vec<u64>,
     /// Along which axes this rank has their first layers only.
@@ -155,6 +155,11 @@ impl Mirrors {
         }
     }
 
+    /// Whether a block may have images of nodes near mirrors, or nodes whose images count.
+    pub(super) fn are_near<const D: usize>(&self, block: [i32; D]) -> bool {
+        self.faces.iter().any(|&(axis, node)| (block[axis] - node.div_euclid(SIDE)).abs() <= 3)
+    }
+
     /// How many blocks away along each axis tiles may have to do with those at a block.
     pub(super) fn radius<const D: usize>(&self, block: [i32; D]) -> [i32; D] {
         std::array::from_fn(|i| {
@@ -186,9 +191,11 @@ impl Border {
         self.held.binary_search(&key(block)).map_or(true, |place| self.booked[place])
     }
 
-    /// Whether several bodies hold a block of the first period.
-    pub(super) fn is_shared(&self, block: u64) -> bool {
-        self.shared.binary_search(&block).is_ok()
+    /// Where the slots of a block of the first period are, if several bodies hold it.
+    pub(super) fn slots_of(&self, block: u64) -> Option<Range<usize>> {
+        let place = self.shared.binary_search_by_key(&block, |(block, _)| *block).ok()?;
+        let [start, end] = self.shared[place].1;
+        Some(start as usize..end as usize)
     }
 
     /// The foreign tiles of a body.
@@ -346,6 +353,13 @@ impl Border {
     }
 }
 
+impl Traffic {
+    /// How many nodes are sent or come, of windows with this side.
+    pub fn nodes<const D: usize>(&self, side: usize) -> usize {
+        self.windows.iter().map(|sent| sent.nodes::<D>(side).count()).sum()
+    }
+}
+
 impl SentWindow {
     /// The nodes that are sent of a window with this side.
     pub fn nodes<const D: usize>(&self, side: usize) -> impl Iterator<Item = usize> {
@@ -394,16 +408,19 @@ fn held_blocks<const D: usize>(
         }
         same
     });
+    for (block, cut) in &mut all {
+        let place = homes.partition_point(|(home, _)| home < block);
+        if homes.get(place).is_none_or(|(home, _)| home != block) || mirrors.are_near(block_of::<D>(*block)) {
+            *cut = 0;
+        }
+    }
     if !mirrors.faces.is_empty() {
         let mut blocks: Vec<u64> = all.iter().map(|(block, _)| *block).collect();
         mirrors.add_images::<D>(&mut blocks);
-        return blocks.into_iter().map(|block| (block, 0)).collect();
-    }
-    for (block, cut) in &mut all {
-        let place = homes.partition_point(|(home, _)| home < block);
-        if homes.get(place).is_none_or(|(home, _)| home != block) {
-            *cut = 0;
-        }
+        let cut = |block: u64| {
+            all.binary_search_by_key(&block, |(block, _)| *block).map_or(0, |place| all[place].1)
+        };
+        return blocks.into_iter().map(|block| (block, cut(block))).collect();
     }
     all
 }

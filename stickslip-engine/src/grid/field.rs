@@ -438,6 +438,52 @@ pub fn cells_at<const D: usize>(corner: usize, cut: u8, side: usize) -> u64 {
     (0..nodes_per_block(D)).filter(is_one).fold(0, |cells, cell| cells | 1 << cell)
 }
 
+/// Adds to a node of a slot what a tile gave it: a place of its window with this side, at this one of its blocks.
+///
+/// # Safety
+/// No other thread may touch the slot meanwhile.
+pub unsafe fn add_at<T: Real, const D: usize>(
+    sums: &NodeSums<T>,
+    field: &Disjoint<Node<T, D>>,
+    (slot, corner): (u32, u8),
+    (place, side): (usize, usize),
+) {
+    let along = |axis: usize| place / side.pow((D - 1 - axis) as u32) % side;
+    let local = (0..D).fold(0, |local, axis| {
+        let bit = usize::from(corner) >> (D - 1 - axis) & 1;
+        local * SIDE as usize + along(axis) - bit * SIDE as usize
+    });
+    // SAFETY: the caller keeps other threads away from the slot.
+    unsafe { Node::take::<Any>(field.get(slot as usize * nodes_per_block(D) + local), sums) };
+}
+
+/// Cells of a tile, a bit each, whose particles reach some nodes of one of its blocks, a bit each: of those, the first
+/// layers along the axes of the cut.
+pub fn cells_reaching<const D: usize>(nodes: Nodes, (corner, cut): (usize, u8), side: usize) -> u64 {
+    let width = side as i32 - SIDE + 1;
+    let (mut nodes, mut cells) = (nodes, 0);
+    while let Some(local) = next_of(&mut nodes) {
+        let place: [i32; D] = node_at([0; D], local);
+        let bit = |bits: usize, axis: usize| bits >> (D - 1 - axis) & 1 == 1;
+        let is_there =
+            |axis: usize| bit(corner, axis) || !bit(usize::from(cut), axis) || place[axis] < width - 1;
+        if !(0..D).all(is_there) {
+            continue;
+        }
+        let along: [_; D] = std::array::from_fn(|axis| {
+            let last = place[axis] + if bit(corner, axis) { SIDE } else { 0 };
+            (last - width + 1).max(0)..(last + 1).min(SIDE)
+        });
+        for cell in 0..nodes_per_block(D) {
+            let at: [i32; D] = node_at([0; D], cell);
+            if (0..D).all(|axis| along[axis].contains(&at[axis])) {
+                cells |= 1 << cell;
+            }
+        }
+    }
+    cells
+}
+
 /// Adds to a slot what a tile gave it: the part of its sums, of a window with this side, that is this one of its
 /// blocks.
 ///

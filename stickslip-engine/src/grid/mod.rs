@@ -10,11 +10,11 @@ mod field;
 mod periods;
 
 pub use active_blocks::{ActiveBlocks, Blocks, Emigrant, SharedBlock, Tile};
-pub use border::{Border, BorderSlot, ForeignTile, Giver, Mirrors, SentWindow, Traffic};
+pub use border::{Border, BorderSlot, Cut, ForeignTile, Giver, Mirrors, Traffic};
 pub use cell_list::{MOST_CELLS, addressable};
 pub use field::{
-    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW_NODES, Window, add_corner,
-    cells_at, nodes_at, window_side,
+    Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW_NODES, Window, add_at,
+    add_corner, cells_at, cells_reaching, nodes_at, window_side,
 };
 
 pub use periods::Periods;

@@ -18,8 +18,8 @@ pub fn fill_holes(count: usize, gone: &[u32]) -> Vec<[u32; 2]> {
 /// Writes a number in its own precision behind bytes, little-endian.
 pub fn write_number<T: Real>(x: T, bytes: &mut Vec<u8>) {
     match size_of::<T>() {
-        4 => bytes.extend((x.f64() as f32).to_le_bytes()),
-        _ => bytes.extend(x.f64().to_le_bytes()),
+        4 => bytes.extend_from_slice(&(x.f64() as f32).to_le_bytes()),
+        _ => bytes.extend_from_slice(&x.f64().to_le_bytes()),
     }
 }
 
@@ -62,7 +62,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
 
     fn write_entries(&self, particles: &[u32], entries: impl Iterator<Item = usize>, message: &mut Vec<u8>) {
         let numbers = &self.numbers[self.first_number()..][..self.len];
-        message.extend(particles.iter().flat_map(|&particle| numbers[particle as usize].to_le_bytes()));
+        for &particle in particles {
+            message.extend_from_slice(&numbers[particle as usize].to_le_bytes());
+        }
         for entry in entries {
             let line = &self.columns[self.first() + entry * self.stride..][..self.len];
             particles.iter().for_each(|&particle| write_number(line[particle as usize], message));

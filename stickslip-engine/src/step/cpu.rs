@@ -43,8 +43,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
         self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
-        let guests = if pass.verbs.scatter.is_some() { self.guests_to_send() } else { None };
-        let sends_guests = guests.is_some();
         let mut among = self.among.take();
         let side = window_side(B::WIDTH).pow(D as u32);
         let mut kept_windows = match (&mut among, pass.verbs.scatter) {
@@ -156,7 +154,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 each_range(kept.len(), TILES, &|range| several(&mut kept[range].iter().copied(), true));
                 let (shown, side) = ((&windows, share), window_side(B::WIDTH));
                 // SAFETY: all tiles that are kept have been visited.
-                let messages = unsafe { Among::windows_for_others::<D>((border, guests), shown, side) };
+                let messages = unsafe { Among::windows_for_others::<D>(border, shown, side) };
                 let from: Vec<usize> = border.incoming.iter().map(|traffic| traffic.rank).collect();
                 came = among.ranks.exchange_during(messages, &from, &mut || scatter());
             }
@@ -165,12 +163,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let found = all.into_inner().unwrap_or_else(PoisonError::into_inner);
         if let (Some(among), Some(border), Some(share)) = (&mut among, border, pass.verbs.scatter) {
             let came_here = (border, kept_windows, came);
-            came = among.add_windows(came_here, (&nodes, share), window_side(B::WIDTH));
+            among.add_windows(came_here, (&nodes, share), window_side(B::WIDTH));
         }
         self.among = among;
-        if sends_guests {
-            self.take_in_guests(&came);
-        }
         found
     }
 }

@@ -55,9 +55,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if self.among.is_some() {
             self.watch.lap("blocks", start);
             start = Instant::now();
-            self.invite_guests();
-            self.watch.lap("guests", start);
-            start = Instant::now();
+            self.dismiss_guests();
         }
         let Workspace { active, field, boundary, left, moved, damped, listed, .. } = &mut self.workspace;
         if blocks == Blocks::New {
@@ -294,7 +292,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Where bodies meet: surfaces, normals and gaps at the nodes that they share; `ahead` how long they still move
     /// before contact acts on them [s].
     pub(super) fn detect_contact(&mut self, ahead: Option<T>) {
-        let start = Instant::now();
+        let mut start = Instant::now();
+        if self.among.is_some() {
+            self.invite_guests();
+            self.watch.lap("guests", start);
+            start = Instant::now();
+        }
         let near = Near {
             active: &self.workspace.active,
             bodies: &self.state.bodies,

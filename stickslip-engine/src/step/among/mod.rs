@@ -12,8 +12,8 @@ use crate::contact::BlockSums;
 use crate::door::RankShare;
 use crate::exact::ExactSum;
 use crate::grid::{
-    ActiveBlocks, Blocks, Border, Disjoint, ForeignTile, Mirrors, Node, NodeSums, Tile, Traffic, add_corner,
-    locate, nodes_per_block, window_side,
+    ActiveBlocks, Blocks, Border, Cut, Disjoint, ForeignTile, Mirrors, Node, NodeSums, Tile, Traffic, add_at,
+    add_corner, locate, nodes_at, nodes_per_block, window_side,
 };
 use crate::lanes::Laned;
 use crate::material::Material;
@@ -42,8 +42,6 @@ pub(super) struct Among<T> {
     partition: Partition,
     /// Where each body began.
     homes: Vec<Home>,
-    /// What others see of particles here in this step, until it is sent.
-    guests: Option<Vec<Message>>,
     /// The tiles that others have named, as they came.
     named: Vec<Message>,
     /// Passes over particles in the step so far.
@@ -84,8 +82,8 @@ struct Worked {
 /// Steps from one comparison of loads to the next.
 const COMPARED_EVERY: u64 = 16;
 /// A rank that works so much longer than the mean has too much, if another partition would lighten that enough.
-const TOO_MUCH: f64 = 1.1;
-const LIGHTER: f64 = 0.95;
+const TOO_MUCH: f64 = 1.04;
+const LIGHTER: f64 = 0.98;
 
 impl Home {
     /// That of a body which began there with so many particles, none if it has no bounds.
@@ -103,19 +101,18 @@ impl<T: Real> Among<T> {
         windows
     }
 
-    /// The windows that others wait for, and after the first pass of a step their guests.
+    /// The windows that others wait for.
     ///
     /// # Safety
     /// Nobody may write to the windows meanwhile.
     pub unsafe fn windows_for_others<const D: usize>(
-        (border, guests): (&Border, Option<Vec<Message>>),
+        border: &Border,
         (windows, share): (&Disjoint<NodeSums<T>>, Share),
         side: usize,
     ) -> Vec<Message> {
         let given = given::<D>(share);
-        let mut guests = guests.into_iter().flatten().peekable();
         let message = |traffic: &Traffic| {
-            let mut message = Vec::new();
+            let mut message = Vec::with_capacity(traffic.nodes::<D>(side) * given.len() * size_of::<T>());
             for sent in &traffic.windows {
                 let first = sent.place as usize * side.pow(D as u32);
                 for node in sent.nodes::<D>(side) {
@@ -124,51 +121,68 @@ impl<T: Real> Among<T> {
                     given.iter().for_each(|&i| write_number(sums[i], &mut message));
                 }
             }
-            message.extend(
-                guests.next_if(|(to, _)| *to == traffic.rank).into_iter().flat_map(|(_, guests)| guests),
-            );
             (traffic.rank, message)
         };
         border.outgoing.iter().map(message).collect()
     }
 
-    /// Takes the windows of others, adds those of all to the slots at the border, and says what came behind them.
+    /// Takes the windows of others, and adds those of all to the slots at the border.
     pub fn add_windows<const D: usize>(
         &mut self,
-        (border, windows, mut came): (&Border, Vec<NodeSums<T>>, Vec<Message>),
+        (border, windows, came): (&Border, Vec<NodeSums<T>>, Vec<Message>),
         (nodes, share): (&Disjoint<Node<T, D>>, Share),
         side: usize,
-    ) -> Vec<Message> {
+    ) {
         self.windows = windows;
         let each_window = side.pow(D as u32);
         let given = given::<D>(share);
-        let kept = border.kept.len();
-        for ((from, message), traffic) in came.iter_mut().zip(&border.incoming) {
+        let each_node = given.len() * size_of::<T>();
+        // Of each foreign tile what came of each of its blocks, and how much of that it is.
+        let nothing: ([&[u8]; 8], [Cut; 8]) = ([&[]; 8], [0; 8]);
+        let mut parts = vec![nothing; border.foreign.len()];
+        for ((from, message), traffic) in came.iter().zip(&border.incoming) {
             assert_eq!(*from, traffic.rank, "who shares blocks sends windows");
-            let sums: usize = traffic.windows.iter().map(|sent| sent.nodes::<D>(side).count()).sum();
-            let behind = message.split_off(sums * given.len() * size_of::<T>());
-            let mut numbers = message.chunks_exact(size_of::<T>()).map(number_of);
+            let mut rest = &message[..];
             for sent in &traffic.windows {
-                let window = &mut self.windows[(kept + sent.place as usize) * each_window..][..each_window];
-                window.fill(NodeSums::default());
-                for node in sent.nodes::<D>(side) {
-                    let sums = window[node].as_flattened_mut();
-                    given.iter().zip(&mut numbers).for_each(|(&i, x)| sums[i] = x);
+                let (parts, cuts) = &mut parts[sent.place as usize];
+                *cuts = sent.cuts;
+                for corner in (0..1_usize << D).filter(|corner| sent.corners >> corner & 1 == 1) {
+                    let count = nodes_at::<D>(corner, cuts[corner], side).count();
+                    (parts[corner], rest) = rest.split_at(count * each_node);
                 }
             }
-            *message = behind;
+            assert!(rest.is_empty(), "ranks agree on what they share");
         }
-        let windows = &self.windows;
+        let (windows, kept) = (&self.windows, border.kept.len());
+        let add_foreign = |(slot, corner): (u32, u8), (bytes, cut): (&[u8], Cut)| {
+            let places = nodes_at::<D>(usize::from(corner), cut, side);
+            for (place, bytes) in places.zip(bytes.chunks_exact(each_node)) {
+                let mut sums = NodeSums::default();
+                let numbers = bytes.chunks_exact(size_of::<T>()).map(number_of);
+                given.iter().zip(numbers).for_each(|(&i, x)| sums.as_flattened_mut()[i] = x);
+                // SAFETY: each slot is in the list once, and the pass is over.
+                unsafe { add_at(&sums, nodes, (slot, corner), (place, side)) };
+            }
+        };
         each_range(border.slots.len(), SLOTS, &|range| {
             for slot in &border.slots[range] {
                 for giver in &border.givers[slot.givers.clone()] {
-                    let window = &windows[giver.window as usize * each_window..][..each_window];
-                    // SAFETY: each slot is in the list once, and the pass is over.
-                    unsafe { add_corner(window, nodes, (slot.slot, giver.corner), side) };
+                    let part = (slot.slot, giver.corner);
+                    match (giver.window as usize).checked_sub(kept) {
+                        Some(foreign) => {
+                            let (parts, cuts) = &parts[foreign];
+                            let corner = usize::from(giver.corner);
+                            add_foreign(part, (parts[corner], cuts[corner]));
+                        }
+                        None => {
+                            let window = &windows[giver.window as usize * each_window..][..each_window];
+                            // SAFETY: as above.
+                            unsafe { add_corner(window, nodes, part, side) };
+                        }
+                    }
                 }
             }
         });
-        came
     }
 }
 
@@ -330,7 +344,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             ranks,
             partition,
             homes,
-            guests: None,
             named: Vec::new(),
             passes: 0,
             fault: None,
@@ -498,46 +511,43 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if changed { Blocks::New } else { Blocks::Same }
     }
 
-    /// Writes down the particles around blocks where bodies meet for the other ranks that have tiles there, to be their
-    /// guests from the first pass on.
-    pub(super) fn invite_guests(&mut self) {
-        let Some(among) = &mut self.among else { return };
+    /// Sends the guests of the step before away.
+    pub(super) fn dismiss_guests(&mut self) {
         self.workspace.active.dismiss_guests();
         self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
-        let active = &self.workspace.active;
-        let (mut messages, mut guests) = (Vec::new(), Vec::new());
-        for traffic in active.border.iter().flat_map(|border| &border.outgoing) {
+    }
+
+    /// Shows particles around nodes where bodies meet to the other ranks that have these nodes, as their guests.
+    pub(super) fn invite_guests(&mut self) {
+        let Some(among) = self.among.as_ref().filter(|_| self.state.bodies.len() > 1) else { return };
+        let (active, present) = (&self.workspace.active, &self.workspace.field.present);
+        let Some(border) = active.border.as_deref() else { return };
+        let mut guests = Vec::new();
+        let message = |traffic: &Traffic| {
             let mut message = Vec::new();
-            for (tile, seen) in active.seen_by(traffic, window_side(B::WIDTH)) {
+            for (tile, seen) in active.seen_by(traffic, present, window_side(B::WIDTH)) {
                 let cells = active.cells_of(tile);
-                message.extend((tile.body as u32).to_le_bytes());
-                message.extend(active.home_of(tile).to_le_bytes());
+                message.extend_from_slice(&(tile.body as u32).to_le_bytes());
+                message.extend_from_slice(&active.home_of(tile).to_le_bytes());
                 guests.clear();
                 for (cell, ends) in cells.windows(2).enumerate() {
                     let here = if seen >> cell & 1 == 1 { ends[0]..ends[1] } else { 0..0 };
-                    message.extend((here.end - here.start).to_le_bytes());
-                    guests.extend(&active.order_of(tile.body)[here.start as usize..here.end as usize]);
+                    message.extend_from_slice(&(here.end - here.start).to_le_bytes());
+                    guests.extend_from_slice(
+                        &active.order_of(tile.body)[here.start as usize..here.end as usize],
+                    );
                 }
                 self.state.bodies[tile.body].particles.write_guests(&guests, &mut message);
             }
-            if !message.is_empty() {
-                messages.push((traffic.rank, message));
-            }
-        }
-        among.guests = Some(messages);
-    }
-
-    /// What others are to see of particles here, if it is not sent yet.
-    pub(super) fn guests_to_send(&mut self) -> Option<Vec<Message>> {
-        self.among.as_mut().and_then(|among| among.guests.take())
-    }
-
-    /// Takes in the guests from other ranks.
-    pub(super) fn take_in_guests(&mut self, came: &[Message]) {
+            (traffic.rank, message)
+        };
+        let messages = border.outgoing.iter().map(message).collect();
+        let from: Vec<usize> = border.incoming.iter().map(|traffic| traffic.rank).collect();
+        let came = among.ranks.exchange_during(messages, &from, &mut || ());
         let n = nodes_per_block(D);
         // Body, home, particles in each cell, their bytes.
         let mut tiles: Vec<(usize, u64, Vec<usize>, &[u8])> = Vec::new();
-        for (_, message) in came {
+        for (_, message) in &came {
             let mut rest = &message[..];
             while let Some((body, after)) = split_number(rest)
                 && let Some((home, mut after)) = after.split_first_chunk()

@@ -1,0 +1,220 @@
+//! What a step would take on many machines: a model of its time, fitted to problem P7.
+//!
+//! ```text
+//! T = i (a n + e H) + b N + H / B + L (8 + 6 d),     d = log2 r, rounded up
+//! ```
+//! r: ranks, n: particles of a rank, N: bodies of the scene, H: bytes that a rank sends, by [`BenchScheme::halo`] times
+//! what contact adds; a, e, b: times that computing takes for a particle, a byte sent and a body that is elsewhere;
+//! i: imbalance; B, L: bandwidth and latency of the network. A step has three exchanges of messages whose number nobody
+//! knows before, each with an answer and a barrier (2 + d latencies), two of windows (a latency each), what the first
+//! rank asks for (d) and a sum over all (2 d). What is under way while the interior is done counts in full, so the model
+//! is not too good. What it leaves out: output, and the moments in which the grid is shared out anew.
+
+use super::on_ranks::OnRanks;
+use super::problems::BenchScheme;
+use crate::chart::{Chart, Curve, Panel};
+use crate::drawing::body_color;
+use serde::Serialize;
+
+/// A network between machines.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Network {
+    /// What it is called.
+    pub name: &'static str,
+    /// From one process to another [s].
+    pub latency: f64,
+    /// Of each process, with its share of what the machine has [bytes/s].
+    pub bandwidth: f64,
+}
+
+/// InfiniBand HDR: 200 Gbit/s a machine, for 16 ranks.
+pub const CLUSTER: Network =
+    Network { name: "InfiniBand HDR, 16 ranks a machine", latency: 1.5e-6, bandwidth: 25e9 / 16.0 };
+
+/// The model of a step of one problem.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepModel {
+    /// The problem, in a few words.
+    pub problem: String,
+    /// a: computing for a particle [s].
+    pub particle: f64,
+    /// e: computing for a byte that is sent [s].
+    pub byte: f64,
+    /// b: computing for a body that is elsewhere [s].
+    pub body: f64,
+    /// i: the slowest rank's computing over the mean.
+    pub imbalance: f64,
+    /// Bytes that are sent over those of the halo alone.
+    pub with_contact: f64,
+    /// Bodies that take part, over particles.
+    pub bodies: f64,
+    #[serde(skip)]
+    scheme: BenchScheme,
+}
+
+/// What a step takes, by what takes it [s].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepTime {
+    pub computing: f64,
+    pub borders: f64,
+    pub bodies: f64,
+    pub sending: f64,
+    pub waiting: f64,
+}
+
+impl StepTime {
+    pub fn sum(&self) -> f64 {
+        self.computing + self.borders + self.bodies + self.sending + self.waiting
+    }
+}
+
+impl StepModel {
+    /// Fits the model to a problem on one rank, on two and on four; a body elsewhere takes `body` [s].
+    pub fn fit(shared: &[OnRanks], scheme: BenchScheme, body: f64) -> Option<Self> {
+        let alone = shared.iter().find(|shared| shared.ranks == 1)?;
+        let two = shared.iter().find(|shared| shared.ranks == 2)?;
+        let several = || shared.iter().filter(|shared| shared.ranks > 1 && shared.modelled > 0.0);
+        let count = several().count() as f64;
+        let particle = alone.computed / alone.particles as f64;
+        let borders = two.computed - particle * two.particles as f64 / 2.0;
+        Some(StepModel {
+            problem: alone.problem.clone(),
+            particle,
+            byte: (borders / two.bytes).max(0.0),
+            body,
+            // More ranks than cores take turns: their imbalance is that of the system.
+            imbalance: two.imbalance.max(1.0),
+            with_contact: several().map(|shared| shared.bytes / shared.modelled).sum::<f64>() / count,
+            bodies: alone.bodies as f64 / alone.particles as f64,
+            scheme,
+        })
+    }
+
+    /// A step of so many ranks, with so many particles each.
+    pub fn step(&self, ranks: f64, particles: f64, network: Network) -> StepTime {
+        let sent = if ranks > 1.0 {
+            self.with_contact * self.scheme.halo((particles * ranks) as usize, ranks as usize)
+        } else {
+            0.0
+        };
+        let deep = ranks.log2().ceil();
+        StepTime {
+            computing: self.imbalance_of(ranks) * self.particle * particles,
+            borders: self.imbalance_of(ranks) * self.byte * sent,
+            bodies: if ranks > 1.0 { self.body * self.bodies * particles * ranks } else { 0.0 },
+            sending: sent / network.bandwidth,
+            waiting: if ranks > 1.0 { network.latency * (8.0 + 6.0 * deep) } else { 0.0 },
+        }
+    }
+
+    fn imbalance_of(&self, ranks: f64) -> f64 {
+        if ranks > 1.0 { self.imbalance } else { 1.0 }
+    }
+
+    /// Part of a step with so many particles a rank that the halo takes, on 1000 ranks.
+    pub fn halo(&self, particles: f64, network: Network) -> f64 {
+        let step = self.step(1000.0, particles, network);
+        (step.borders + step.sending) / step.sum()
+    }
+}
+
+/// Ranks up to 10,000, four for each factor of ten.
+fn ranks() -> impl Iterator<Item = f64> {
+    (0..=16).map(|i| 10_f64.powf(f64::from(i) / 4.0).round())
+}
+
+/// Weak and strong scaling by the models, and what a step is made of.
+pub fn chart(models: &[StepModel], network: Network) -> Chart {
+    let curve = |(label, i): (String, usize), of: &dyn Fn(f64) -> f64| Curve {
+        label,
+        color: body_color(i),
+        dashed: false,
+        points: ranks().map(|ranks| [ranks.log10(), of(ranks)]).collect(),
+    };
+    let weak = |model: &StepModel, ranks: f64| {
+        model.step(1.0, WEAK, network).sum() / model.step(ranks, WEAK, network).sum()
+    };
+    let strong = |model: &StepModel, ranks: f64| {
+        let one = model.step(1.0, STRONG, network).sum();
+        one / (ranks * model.step(ranks, STRONG / ranks, network).sum())
+    };
+    let panel = |name: &str, of: &dyn Fn(&StepModel, f64) -> f64| Panel {
+        name: name.to_owned(),
+        unit: "",
+        curves: (models.iter().enumerate())
+            .map(|(i, model)| curve((model.problem.clone(), i), &|ranks| of(model, ranks)))
+            .collect(),
+    };
+    let mut panels = vec![
+        panel("weak scaling: efficiency, 10^6 particles a rank", &weak),
+        panel("strong scaling: efficiency, 2 10^9 particles", &strong),
+    ];
+    if let Some(model) = models.iter().find(|model| model.problem.starts_with("P3")) {
+        let parts: [(&str, fn(&StepTime) -> f64); 5] = [
+            ("computing", |step| step.computing),
+            ("borders", |step| step.borders),
+            ("bodies elsewhere", |step| step.bodies),
+            ("sending", |step| step.sending),
+            ("waiting", |step| step.waiting),
+        ];
+        let curves = parts.iter().enumerate().map(|(i, (label, of))| {
+            let part = |ranks: f64| {
+                let step = model.step(ranks, WEAK, network);
+                of(&step) / step.sum()
+            };
+            curve(((*label).to_owned(), i), &part)
+        });
+        let name = "parts of a step of P3, 10^6 particles a rank".to_owned();
+        panels.push(Panel { name, unit: "", curves: curves.collect() });
+    }
+    Chart {
+        title: format!("Many ranks by the model of a step, {}", network.name),
+        over: "log10 of the number of ranks".to_owned(),
+        panels,
+        caption: String::new(),
+    }
+}
+
+/// Particles of a rank in weak scaling, and of all in strong scaling.
+const WEAK: f64 = 1e6;
+const STRONG: f64 = 2e9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shared(ranks: usize, computed: f64, bytes: f64) -> OnRanks {
+        let scheme = BenchScheme::default();
+        OnRanks {
+            problem: "P1".to_owned(),
+            ranks,
+            particles: 1_000_000,
+            bodies: 100,
+            threads: vec![0.1],
+            seconds: vec![0.1],
+            speed: 1.0,
+            bytes,
+            modelled: scheme.halo(1_000_000, ranks),
+            messages: 5.0,
+            computed,
+            waiting: 0.0,
+            imbalance: 1.0,
+        }
+    }
+
+    /// The fit gives back what was measured, and a network without end leaves computing alone.
+    #[test]
+    fn the_model_gives_back_what_was_measured() {
+        let scheme = BenchScheme::default();
+        let halo = scheme.halo(1_000_000, 2);
+        let measured = [shared(1, 0.1, 0.0), shared(2, 0.06, 2.0 * halo)];
+        let model = StepModel::fit(&measured, scheme, 1e-9).unwrap();
+        let free = Network { name: "none", latency: 0.0, bandwidth: f64::INFINITY };
+        let [one, two] = [model.step(1.0, 1e6, free), model.step(2.0, 5e5, free)];
+        assert!((one.sum() - 0.1).abs() < 1e-12, "{one:?}");
+        assert!((two.computing + two.borders - 0.06).abs() < 1e-12, "{two:?}");
+        assert!((two.bodies - 1e-7).abs() < 1e-15, "{two:?}");
+        let slow = model.step(8.0, 1e6, Network { name: "slow", latency: 1e-3, bandwidth: 1e6 });
+        assert!((slow.waiting - 26e-3).abs() < 1e-12 && slow.sending > 1.0, "{slow:?}");
+    }
+}
