@@ -12,7 +12,17 @@ fn keys(value: &Value) -> Vec<&str> {
 #[test]
 fn a_benchmark_prints_tables_and_writes_json() {
     let workplace = Workplace::new();
-    let printed = workplace.succeed(&["bench", "--tiny", "--threads", "2", "--json", "speed.json"]);
+    let printed = workplace.succeed(&[
+        "bench",
+        "--tiny",
+        "--threads",
+        "2",
+        "--json",
+        "speed.json",
+        "--draw",
+        "many.svg",
+    ]);
+    assert!(std::fs::read_to_string(workplace.path("many.svg")).unwrap().contains("weak scaling"));
     for word in [
         "copy GB/s",
         "P1 cube, linear f64 last",
@@ -38,6 +48,7 @@ fn a_benchmark_prints_tables_and_writes_json() {
         "skipped",
         "end_to_end",
         "on_ranks",
+        "models",
         "peers",
         "goals",
     ];
@@ -77,6 +88,8 @@ fn scenes_of_problems_can_be_run_by_hand() {
 
 #[test]
 fn an_unknown_problem_is_refused_with_those_that_are_known() {
+    let ran = Workplace::new().run(&["bench", "--only", "P1", "--draw", "many.svg"]);
+    assert_eq!((ran.code, ran.stderr.contains("P7")), (Some(2), true), "{}", ran.stderr);
     let ran = Workplace::new().run(&["bench", "--only", "P8"]);
     assert_eq!(ran.code, Some(2));
     assert!(ran.stderr.contains("P7"), "{}", ran.stderr);

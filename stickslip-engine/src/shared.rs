@@ -123,7 +123,7 @@ impl Part {
 
     /// What each rank says, by rank, for the first.
     fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
-        all_of(&self.ranks.tell_first(&bytes_of(said)))
+        all_of(self.ranks.tell_first(&bytes_of(said)))
     }
 
     /// Does what the first rank asks; false if that was the last.
@@ -234,7 +234,7 @@ impl Part {
         let of_body = |_| SavedBody::merged(all.iter_mut().filter_map(Iterator::next).collect());
         let bodies = own.bodies.iter().filter_map(of_body).collect();
         let sums = self.ranks.tell_first(&named_bytes_of(&own.contact_sums));
-        let contact_sums = ContactSums::merged(all_of(&sums));
+        let contact_sums = ContactSums::merged(all_of(sums));
         Some(SavedState { bodies, contact_sums, ..own })
     }
 

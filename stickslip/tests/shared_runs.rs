@@ -290,8 +290,8 @@ particles = 0.02
 checkpoints = 0.01
 "#;
 
-/// Free rigid bodies for the scene above: a flap on a hinge, a pebble that a string holds to it, a plate that is pressed
-/// onto a disk, and a nail that a spring pulls to one.
+/// Free rigid bodies for the scene above: a flap on a hinge, a pebble that a string holds to it, a plate that is
+/// pressed onto a disk, and a nail that a spring pulls to one.
 const MECHANISM: &str = r#"
 [[bodies]]
 name = "flap"
@@ -336,7 +336,7 @@ stiffness = 3e3
 
 /// A rigid block and rigid balls that fall on a soft one and on each other.
 const DROPPED: &str = r#"
-gravity = [0, 0, -9.81]
+gravity = [0, 0, "-9.81 * (1 + 0.3 * sin(60 * t))"]
 [space]
 dimension = "3d"
 cell = 0.125

@@ -1,9 +1,8 @@
 //! How fast this machine could be, and how fast the program is on it.
 //!
 //! The rooms in the order of data: the machine's limits, problems, what a step must move, one measurement in a process
-//! of its own, whole runs with and without outputs, problems on ranks, what they would take on many, other
-//! programs, ratios against goals, and the
-//! report of it all.
+//! of its own, whole runs with and without outputs, problems on ranks, what they would take on many, other programs,
+//! ratios against goals, and the report of it all.
 
 mod end_to_end;
 mod goals;

@@ -203,8 +203,9 @@ impl BenchRecord {
         }
         format!(
             "P7, a step by ranks of one thread against as many threads of one process, with the same bits; what a rank \
-             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\nBy the model of a step, {}: efficiency with 10^6 particles a rank, and the \
-             part of borders in a step.\n{models}\n",
+             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\nBy the \
+             model of a step, {}: efficiency with 10^6\nparticles a rank, and the part of borders in a step.\n\
+             {models}\n",
             CLUSTER.name
         )
     }

@@ -76,7 +76,7 @@ impl BenchSuite {
             }
         }
         if self.wants("P7") {
-            let body = on_ranks::body_elsewhere(self.effort(), self.extent)?;
+            let body = on_ranks::body_elsewhere(self.extent)?;
             for case in on_ranks::problems(self.extent) {
                 let turns = if self.extent == BenchExtent::Tiny { 1 } else { TURNS_ON_RANKS };
                 let measured = OnRanks::measure(&case, self.effort(), turns)?;

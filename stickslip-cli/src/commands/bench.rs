@@ -6,6 +6,7 @@ use crate::chart::draw;
 use crate::failure::Failure;
 use crate::files;
 use clap::Args;
+use miette::miette;
 use std::path::PathBuf;
 
 /// Measure this machine's limits, and how near the program comes to them.
@@ -78,6 +79,11 @@ impl Arguments {
             (_, true) => BenchExtent::Quick,
             _ => BenchExtent::Full,
         };
+        if self.draw.is_some() && !self.only.is_empty() && !self.only.iter().any(|only| only == "P7") {
+            return Err(Failure::Input(miette!(
+                "--draw: found no problem P7 to draw; allowed: with --only P7"
+            )));
+        }
         let all = std::thread::available_parallelism().map_or(1, usize::from);
         let suite = BenchSuite {
             extent,

@@ -75,7 +75,7 @@ struct Touching {
 /// Impulses and works of contact since the start, by pair.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ContactSums {
-    /// Pairs that ever touched, in the order in which they first did.
+    /// Pairs that ever touched, in any order.
     pairs: Vec<TouchedPair>,
     /// Where each of them stands.
     #[serde(skip)]
@@ -161,8 +161,8 @@ impl ContactSums {
         }) && self.present.iter().all(|&place| place < self.pairs.len())
     }
 
-    /// Adds what pairs did in one use of contact, ordered by pair and block, pair by pair; surfaces count as touching for
-    /// `duration` [s].
+    /// Adds what pairs did in one use of contact, ordered by pair and block; surfaces count as touching for `duration`
+    /// [s]. Works of all pairs together are not among it.
     pub fn add<T: Real, const D: usize>(
         &mut self,
         touches: &[BlockSums],
@@ -228,8 +228,7 @@ impl ContactSums {
         }
     }
 
-    /// Adds what two rigid bodies did to each other at a point in a step of `duration` [s]; points have no area. Works of
-    /// all pairs together are not among it.
+    /// Adds what two rigid bodies did to each other at a point in a step of `duration` [s]; points have no area.
     pub fn touch(&mut self, touch: &RigidTouch, duration: f64) {
         let RigidTouch { bodies, push, rub, place, friction, .. } = touch;
         let pair = self.place(*bodies);
@@ -265,7 +264,7 @@ impl ContactSums {
         first.in_order()
     }
 
-    /// With its pairs in the order of their bodies.
+    /// With its pairs in the order of their bodies, as they are saved: no pair is found before [`ContactSums::indexed`].
     pub fn in_order(mut self) -> Self {
         self.pairs.sort_unstable_by_key(|pair| pair.bodies);
         self.present.clear();

@@ -64,6 +64,11 @@ impl<const N: usize> Values for Vec<[f64; N]> {
     }
 }
 
+/// The entries in these rows.
+fn picked<X: Copy>(all: Vec<X>, rows: &[usize]) -> Vec<X> {
+    rows.iter().map(|&i| all[i]).collect()
+}
+
 /// Which of the columns of every particle a snapshot holds. What they are called, their units and kinds are
 /// [`column::EVERY`]'s; who fills, writes or reads a snapshot goes over this list.
 macro_rules! snapshot {
@@ -110,7 +115,14 @@ macro_rules! snapshot {
                 }
                 let mut rows: Vec<usize> = (0..all.number.len()).collect();
                 rows.sort_unstable_by_key(|&i| (all.body[i], all.number[i]));
-                all.of_rows(&rows)
+                // Column by column, so that none is there twice for longer than it takes.
+                ParticleSnapshot {
+                    dimension: all.dimension,
+                    body: picked(all.body, &rows),
+                    number: picked(all.number, &rows),
+                    $($name: picked(all.$name, &rows),)*
+                    history: all.history.into_iter().map(|column| column.only(&rows)).collect(),
+                }
             }
 
             /// The particles in these rows.

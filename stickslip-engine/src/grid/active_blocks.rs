@@ -491,9 +491,9 @@ impl<const D: usize> ActiveBlocks<D> {
         &self.cell_lists[tile.body].cells[tile.number * n..=(tile.number + 1) * n]
     }
 
-    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach nodes
-    /// which the other rank has and several bodies have mass at. `present`: the nodes of each slot with mass, `side`:
-    /// that of windows.
+    /// The tiles whose particles another rank sees, and in which cells those are, a bit each: particles that reach
+    /// nodes which the other rank has and several bodies have mass at. `present`: the nodes of each slot with mass,
+    /// `side`: that of windows.
     pub fn seen_by<'a>(
         &'a self,
         traffic: &'a Traffic,

@@ -116,7 +116,7 @@ pub struct Border {
     pub(super) ranks_near: HashMap<u64, Box<[u32]>>,
     /// Blocks that several bodies hold, sorted, and where their slots are in [`super::ActiveBlocks`].
     pub(super) shared: Vec<(u64, [u32; 2])>,
-    /// Blocks of those tiles, sorted.
+    /// Blocks of this rank's tiles that are near others, sorted.
     held: Vec<u64>,
     /// Along which axes this rank has their first layers only.
     cuts: Vec<Cut>,

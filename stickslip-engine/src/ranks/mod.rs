@@ -34,7 +34,7 @@ pub fn combined<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X, jo
 
 /// What each rank says, by rank.
 pub fn gathered<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X) -> Vec<X> {
-    all_of(&ranks.gather(&bytes_of(said)))
+    all_of(ranks.gather(&bytes_of(said)))
 }
 
 /// Bytes of what ranks tell each other.
@@ -48,8 +48,9 @@ pub fn read<X: DeserializeOwned>(bytes: &[u8]) -> X {
 }
 
 /// What the bytes of each rank say.
-pub fn all_of<X: DeserializeOwned>(said: &[Vec<u8>]) -> Vec<X> {
-    said.iter().map(|said| read(said)).collect()
+pub fn all_of<X: DeserializeOwned>(said: Vec<Vec<u8>>) -> Vec<X> {
+    // Each message goes as soon as it is read.
+    said.into_iter().map(|said| read(&said)).collect()
 }
 
 /// What a rank sent to others, and how long it waited for them.
@@ -94,8 +95,8 @@ pub trait Ranks: Send + Sync {
     /// Sends a message to each of some other ranks, and takes those that came, by rank.
     fn exchange(&self, messages: Vec<Message>) -> Vec<Message>;
 
-    /// Sends a message to each of some other ranks and works while they are under way, then takes one of each of `from`,
-    /// in this order. Both sides know who sends to whom.
+    /// Sends a message to each of some other ranks and works while they are under way, then takes one of each of
+    /// `from`, in this order. Both sides know who sends to whom. No rank may leave before a call of all has followed.
     fn exchange_during(&self, messages: Vec<Message>, from: &[usize], work: &mut dyn FnMut())
     -> Vec<Message>;
 

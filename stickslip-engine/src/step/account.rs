@@ -1,7 +1,6 @@
 //! The verb that books what a step did: contact, the work of friction and of damping, and what forces lack to balance.
 
 use super::Engine;
-use super::among::Among;
 use super::pass::FaultReport;
 use super::state::Workspace;
 use crate::basis::Basis;
@@ -111,26 +110,22 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Ends the step on all ranks: books its sums, or gives the first fault that any of them found.
     pub(super) fn end_step(&mut self, dt: T) -> Result<(), FaultReport> {
-        let StepSums { nodes, unsettled, contact } = std::mem::take(&mut self.workspace.sums);
-        let own = StepEnd {
-            fault: self.among.as_mut().and_then(Among::fault),
-            signal: self.state.signal,
-            sums: nodes.into_iter().chain([unsettled]).chain(contact).collect(),
-        };
-        let StepEnd { fault, signal, sums } = match &self.among {
-            Some(among) => combined(&*among.ranks, &own, StepEnd::and),
-            None => own,
-        };
-        if let Some((_, fault)) = fault {
-            return Err(fault);
+        let StepSums { nodes: [unbalanced, internal, external, kinetic, damped], unsettled, contact } =
+            std::mem::take(&mut self.workspace.sums);
+        let [rubbed, torn, work, reduced] = contact;
+        let mut sums =
+            [unbalanced, internal, external, kinetic, damped, unsettled, rubbed, torn, work, reduced];
+        if let Some(among) = &mut self.among {
+            let own = StepEnd { fault: among.fault(), signal: self.state.signal, sums: sums.to_vec() };
+            let all = combined(&*among.ranks, &own, StepEnd::and);
+            if let Some((_, fault)) = all.fault {
+                return Err(fault);
+            }
+            self.state.signal = all.signal;
+            sums.iter_mut().zip(all.sums).for_each(|(sum, all)| *sum = all);
         }
-        self.state.signal = signal;
-        let sums: Vec<f64> = sums.iter().map(ExactSum::value).collect();
         let [unbalanced, internal, external, kinetic, damped, unsettled, rubbed, torn, work, reduced] =
-            sums[..]
-        else {
-            unreachable!("all ranks have the same sums")
-        };
+            sums.each_ref().map(ExactSum::value);
         self.state.damping += damped;
         let contact = &mut self.state.contact_sums;
         (contact.friction, contact.adhesion) = (contact.friction + rubbed, contact.adhesion + torn);
@@ -225,7 +220,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.workspace.touches = [one, two, three];
     }
 
-    /// Lists what pairs did in a use of contact at the blocks that this rank books, by those of the impulses that count.
+    /// Lists what pairs did in a use of contact at the blocks that this rank books, by the impulses that count.
     fn list_touches(
         &self,
         touches: &mut Vec<BlockSums>,

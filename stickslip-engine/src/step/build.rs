@@ -51,9 +51,10 @@ pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>
 }
 
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
-/// `step`, `bodies`, `ledger`, `contact_sums` and what else is of the whole ask the others. What is of single particles
-/// is of those that this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`,
-/// `save`, `save_columns`; `contact_sums` and `patches` are of pairs whose sums it keeps. Nobody can write to it or give it another state; [`crate::shared`] has what runs need.
+/// `step`, `bodies`, `ledger` and what else is of the whole ask the others. What is of single particles is of those that
+/// this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`, `save`,
+/// `save_columns`; `contact_sums` and `patches` are of the pairs whose sums it keeps. Nobody can write to it or give it
+/// another state; [`crate::shared`] has what runs need.
 ///
 /// # Errors
 /// What [`check::problems`] finds, and what ranks cannot share yet.

@@ -34,7 +34,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut parts = std::mem::take(&mut self.workspace.weights);
         for body in &self.state.bodies {
             if let Some(motion) = &body.motion {
-                let mass = motion.as_free().map_or(0.0, |free| free.mass);
+                // All ranks have it: the first counts it.
+                let counts = self.among.as_ref().is_none_or(|among| among.ranks.rank() == 0);
+                let mass = motion.as_free().filter(|_| counts).map_or(0.0, |free| free.mass);
                 sums.iter_mut().zip(motion.center).for_each(|(sum, x)| sum.add(mass * x));
                 continue;
             }

@@ -65,7 +65,7 @@ pub(super) struct Among<T> {
 /// Where a body began.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Home {
-    /// The rank that had its first particle.
+    /// The rank that had its first particle; the first one, if it had none.
     pub rank: u32,
     /// How many particles it had: one without bounds counts as larger than all others.
     pub particles: usize,

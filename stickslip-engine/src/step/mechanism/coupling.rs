@@ -191,19 +191,21 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
 
     /// Nodes of free bodies where others are.
     fn touched(&self, bodies: &[Body<T, D>], free: &[FreeBody]) -> Touched {
-        let (mut nodes, mut parts) = (Vec::new(), Vec::new());
+        let (mut nodes, mut parts, mut here) = (Vec::new(), Vec::new(), false);
         for part in self.solve.survey.parts() {
             let before = nodes.len();
             for site in &part.sites {
+                let is_booked = self.active.books(locate(site.node).0);
                 for side in &part.sides[site.sides.clone()] {
                     let Ok(body) = free.binary_search_by_key(&side.body, |free| free.index) else { continue };
                     let arm = arm(self.lattice, site.node, &bodies[side.body]);
                     nodes.push(TouchedNode { body, index: side.index, arm });
+                    here |= is_booked;
                 }
             }
             parts.push(nodes.len() > before);
         }
-        let here = f64::from(u8::from(!nodes.is_empty()));
+        let here = f64::from(u8::from(here));
         let anywhere = self.ranks.map_or(here, |ranks| largest(ranks, here)) > 0.0;
         Touched { nodes, parts, anywhere }
     }

@@ -186,7 +186,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let start = Instant::now();
         let gravity = self.gravity(dt).space();
-        let forces = if self.settings.loads.is_empty() { Vec::new() } else { self.forces_on_free_bodies() };
+        let loaded = self.settings.loads.iter().any(|load| self.settings.free[load.body]);
+        let forces = if loaded { self.forces_on_free_bodies() } else { Vec::new() };
         let mechanism = &mut self.workspace.mechanism;
         let (dt, time) = (dt.f64(), self.state.time);
         let bodies = &mut self.state.bodies;
