@@ -15,7 +15,7 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::{Ran, Workplace, new_scene};
+use stickslip::{Disk, Ran, Workplace, new_scene};
 
 /// The new scene, coarse and short, with many files.
 const SETTINGS: [&str; 12] = [
@@ -59,30 +59,6 @@ enum Trouble {
     Device,
     /// There is a folder in its place.
     Folder,
-}
-
-/// A file system of its own in a folder, while this lives.
-struct Disk(PathBuf);
-
-impl Disk {
-    /// None where the test may not mount one.
-    fn mount(path: PathBuf, kib: u32) -> Option<Self> {
-        fs::create_dir(&path).unwrap();
-        let size = format!("size={kib}k");
-        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", &size, "tmpfs"]).arg(&path).output();
-        mounted.is_ok_and(|output| output.status.success()).then_some(Disk(path))
-    }
-
-    fn grow(&self) {
-        let grown = Command::new("mount").args(["-o", "remount,size=64m"]).arg(&self.0).status();
-        assert!(grown.unwrap().success());
-    }
-}
-
-impl Drop for Disk {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg("--lazy").arg(&self.0).status();
-    }
 }
 
 /// Files of a run, by their names in its folder, but for its record, checkpoints, pictures and what has no name of its

@@ -7,7 +7,7 @@ mod stickslip;
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::{Ran, Workplace, new_scene, outcome, record};
+use stickslip::{LONG, Ran, SHORT, Workplace, new_scene, outcome, ranks, record};
 
 /// So many processes of the program with these words, on as few processors as there are.
 fn together(workplace: &Workplace, count: usize, words: &[&str]) -> Command {
@@ -25,19 +25,6 @@ fn run(workplace: &Workplace, count: usize, words: &[&str]) -> Ran {
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     Ran { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
-
-const SHORT: [&str; 4] = ["--set", "cells_per_radius=4", "--threads", "1"];
-/// With time to be stopped.
-const LONG: [&str; 8] = [
-    "--set",
-    "cells_per_radius=10",
-    "--set",
-    "time.end=0.9",
-    "--set",
-    "outputs.checkpoints=0.01",
-    "--threads",
-    "1",
-];
 
 fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [words, more].concat()
@@ -94,7 +81,7 @@ fn a_run_whose_process_was_killed_goes_on_with_another_number() {
             assert!(begun.elapsed() < Duration::from_secs(100), "there is a checkpoint soon");
             std::thread::sleep(Duration::from_millis(10));
         }
-        let process = ranks(out)[killed].to_string();
+        let process = ranks(out)[&killed].to_string();
         assert!(Command::new("kill").args(["-KILL", &process]).status().unwrap().success());
         let ended = launcher.wait_with_output().unwrap();
         let told = String::from_utf8_lossy(&ended.stderr);
@@ -163,20 +150,6 @@ fn what_is_wrong_is_told_once() {
     let ran = run(&workplace, 3, &["check", "scene.toml"]);
     assert_eq!((ran.code, ran.stdout.matches("particles").count() > 0), (Some(0), true), "{}", ran.stderr);
     assert_eq!(ran.stdout, workplace.succeed(&["check", "scene.toml"]));
-}
-
-/// Process numbers of the ranks of a run into a folder, the first one first.
-fn ranks(out: &str) -> Vec<u32> {
-    let of_run = |pid: &u32| {
-        let words = std::fs::read(format!("/proc/{pid}/cmdline")).unwrap_or_default();
-        let words: Vec<&[u8]> = words.split(|&byte| byte == 0).collect();
-        words[0] == env!("CARGO_BIN_EXE_stickslip").as_bytes() && words.contains(&out.as_bytes())
-    };
-    let all = std::fs::read_dir("/proc").unwrap().flatten();
-    let mut found: Vec<u32> =
-        all.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).filter(of_run).collect();
-    found.sort_unstable();
-    found
 }
 
 /// The newest checkpoint of a run, by name.

@@ -22,7 +22,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use stickslip::{Ran, Workplace, new_scene, outcome, record};
+use stickslip::{Disk, LONG, Ran, SHORT, Workplace, new_scene, outcome, ranks, record};
 
 /// Each of these tests takes all processors.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -183,29 +183,6 @@ impl Drop for Hosts {
     }
 }
 
-/// A file system of its own in a folder, while this lives.
-struct Disk(PathBuf);
-
-impl Disk {
-    fn mount(path: PathBuf, kib: u32) -> Self {
-        fs::create_dir(&path).unwrap();
-        let mounted = told("mount", &format!("-t tmpfs -o size={kib}k tmpfs {}", path.display()));
-        mounted
-            .unwrap_or_else(|problem| panic!("a disk that is full needs root, who may mount one: {problem}"));
-        Disk(path)
-    }
-
-    fn grow(&self) {
-        told("mount", &format!("-o remount,size=64m {}", self.0.display())).unwrap();
-    }
-}
-
-impl Drop for Disk {
-    fn drop(&mut self) {
-        let _ = told("umount", &format!("--lazy {}", self.0.display()));
-    }
-}
-
 const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
 
 /// Containers have no other user.
@@ -273,40 +250,11 @@ fn assert_same(workplace: &Workplace, one: &str, other: &str) {
     assert_eq!(one_outcome.1, outcome.1, "the last state of {other}");
 }
 
-/// Processes of a run into a folder, by their ranks.
-fn ranks(out: &str) -> BTreeMap<usize, u32> {
-    let all = fs::read_dir("/proc").unwrap().flatten();
-    let all = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-    let of_run = all.filter_map(|pid| {
-        let words = fs::read(format!("/proc/{pid}/cmdline")).ok()?;
-        let words: Vec<&[u8]> = words.split(|&byte| byte == 0).collect();
-        if words[0] != PROGRAM.as_bytes() || !words.contains(&out.as_bytes()) {
-            return None;
-        }
-        let environment = fs::read_to_string(format!("/proc/{pid}/environ")).ok()?;
-        let rank = environment.split('\0').find_map(|line| line.strip_prefix("OMPI_COMM_WORLD_RANK="));
-        Some((rank?.parse().ok()?, pid))
-    });
-    of_run.collect()
-}
-
 fn checkpoints(workplace: &Workplace, out: &str) -> usize {
     let names = fs::read_dir(workplace.path(out).join("checkpoints")).into_iter().flatten().flatten();
     names.filter(|name| name.path().extension().is_some_and(|ending| ending == "checkpoint")).count()
 }
 
-const SHORT: [&str; 4] = ["--set", "cells_per_radius=4", "--threads", "1"];
-/// With time to be cut off.
-const LONG: [&str; 8] = [
-    "--set",
-    "cells_per_radius=10",
-    "--set",
-    "time.end=0.9",
-    "--set",
-    "outputs.checkpoints=0.01",
-    "--threads",
-    "1",
-];
 /// With many files.
 const FULL: [&str; 14] = [
     "--set",
@@ -418,7 +366,8 @@ fn a_run_whose_link_is_cut_ends_and_goes_on_with_another_number() {
 fn a_run_whose_disk_is_full_ends_and_goes_on_with_another_number() {
     let _turn = one_at_a_time();
     let workplace = scene(&FULL);
-    let disk = Disk::mount(workplace.path("disk"), 700);
+    let disk =
+        Disk::mount(workplace.path("disk"), 700).expect("a disk that is full needs root, who may mount one");
     let words = with(&["run", "scene.toml", "--quiet", "--out", "disk/out"], &FULL);
     let ran = ended(spawn(on_one_host(&workplace, 3, &words)), PATIENCE);
     assert_eq!(ran.code, Some(1), "{}", ran.stderr);

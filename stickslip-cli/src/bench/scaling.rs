@@ -63,6 +63,9 @@ pub struct StepTime {
     pub waiting: f64,
 }
 
+/// One of these times.
+type PartOfStep = fn(&StepTime) -> f64;
+
 impl StepTime {
     pub fn sum(&self) -> f64 {
         self.computing + self.borders + self.bodies + self.sending + self.waiting
@@ -151,7 +154,7 @@ pub fn chart(models: &[StepModel], network: Network) -> Chart {
         panel("strong scaling: efficiency, 2 10^9 particles", &strong),
     ];
     if let Some(model) = models.iter().find(|model| model.problem.starts_with("P3")) {
-        let parts: [(&str, fn(&StepTime) -> f64); 5] = [
+        let parts: [(&str, PartOfStep); 5] = [
             ("computing", |step| step.computing),
             ("borders", |step| step.borders),
             ("bodies elsewhere", |step| step.bodies),

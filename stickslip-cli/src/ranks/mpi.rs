@@ -8,7 +8,7 @@ use mpi::traits::{CommunicatorCollectives, Root};
 use mpi::{Tag, Threading, request};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-use stickslip::ranks::{Message, Ranks, SentAndWaited};
+use stickslip::ranks::{Join, Message, Ranks, SentAndWaited};
 
 /// Bytes of a piece: MPI counts with 32 bits. A message of several has as many whole ones as fit, and a shorter one.
 const PIECE: usize = 1 << 30;
@@ -224,7 +224,7 @@ impl Ranks for Mpi {
     }
 
     /// Up a binomial tree to the first rank, and down again.
-    fn combine(&self, said: Vec<u8>, join: &dyn Fn(&[u8], &[u8]) -> Vec<u8>) -> Vec<u8> {
+    fn combine(&self, said: Vec<u8>, join: Join) -> Vec<u8> {
         let world = world();
         let mut all = said;
         for bit in (0..usize::BITS).map(|bit| 1 << bit).take_while(|bit| *bit < self.count) {

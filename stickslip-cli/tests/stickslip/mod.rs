@@ -9,6 +9,60 @@ use tempfile::TempDir;
 /// An empty folder to run the program in; it goes when the test ends.
 pub struct Workplace(TempDir);
 
+/// A short run of the new scene, and one with time for something to happen to it.
+pub const SHORT: [&str; 4] = ["--set", "cells_per_radius=4", "--threads", "1"];
+pub const LONG: [&str; 8] = [
+    "--set",
+    "cells_per_radius=10",
+    "--set",
+    "time.end=0.9",
+    "--set",
+    "outputs.checkpoints=0.01",
+    "--threads",
+    "1",
+];
+
+/// A small disk of its own, while this lives.
+pub struct Disk(PathBuf);
+
+impl Disk {
+    /// None where the test may not mount one.
+    pub fn mount(path: PathBuf, kib: u32) -> Option<Self> {
+        std::fs::create_dir(&path).unwrap();
+        let size = format!("size={kib}k");
+        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", &size, "tmpfs"]).arg(&path).output();
+        mounted.is_ok_and(|output| output.status.success()).then_some(Disk(path))
+    }
+
+    pub fn grow(&self) {
+        let grown = Command::new("mount").args(["-o", "remount,size=64m"]).arg(&self.0).status();
+        assert!(grown.unwrap().success());
+    }
+}
+
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg("--lazy").arg(&self.0).status();
+    }
+}
+
+/// Processes of a run into a folder that MPI started, by rank.
+pub fn ranks(out: &str) -> BTreeMap<usize, u32> {
+    let all = std::fs::read_dir("/proc").unwrap().flatten();
+    let all = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    let of_run = all.filter_map(|pid| {
+        let words = std::fs::read(format!("/proc/{pid}/cmdline")).ok()?;
+        let words: Vec<&[u8]> = words.split(|&byte| byte == 0).collect();
+        if words[0] != env!("CARGO_BIN_EXE_stickslip").as_bytes() || !words.contains(&out.as_bytes()) {
+            return None;
+        }
+        let environment = std::fs::read_to_string(format!("/proc/{pid}/environ")).ok()?;
+        let rank = environment.split('\0').find_map(|line| line.strip_prefix("OMPI_COMM_WORLD_RANK="));
+        Some((rank?.parse().ok()?, pid))
+    });
+    of_run.collect()
+}
+
 /// What a run of the program left.
 pub struct Ran {
     /// Exit code; `None` after a signal.

@@ -84,6 +84,9 @@ impl SentAndWaited {
     }
 }
 
+/// Makes one message of two.
+pub type Join<'a> = &'a dyn Fn(&[u8], &[u8]) -> Vec<u8>;
+
 /// The ranks of a simulation, as one of them sees it. All of them make the same calls in the same order.
 pub trait Ranks: Send + Sync {
     /// This one's number.
@@ -101,7 +104,7 @@ pub trait Ranks: Send + Sync {
     -> Vec<Message>;
 
     /// What all ranks say, joined two by two, for all of them. It must not matter who is joined with whom.
-    fn combine(&self, said: Vec<u8>, join: &dyn Fn(&[u8], &[u8]) -> Vec<u8>) -> Vec<u8> {
+    fn combine(&self, said: Vec<u8>, join: Join) -> Vec<u8> {
         let all = self.gather(&said).into_iter();
         all.reduce(|a, b| join(&a, &b)).unwrap_or(said)
     }

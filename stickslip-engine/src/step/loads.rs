@@ -22,6 +22,7 @@ use crate::part::PartPoint;
 use crate::scene::{Face, OutsideValue};
 use crate::tensor::{Real, Vector, cross};
 use crate::threads::each;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Points that a thread takes at a time.
@@ -81,6 +82,19 @@ pub(super) struct LoadedNode<T> {
     pub mirrored: u32,
     /// N_i [-]
     pub weight: T,
+}
+
+/// What acts on a free rigid body at a point.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct ForceOnBody {
+    /// Place of the point among those of all loads.
+    number: u32,
+    /// Index of the body.
+    pub body: usize,
+    /// The force [N].
+    pub force: [f64; 3],
+    /// Where it acts [m].
+    pub place: [f64; 3],
 }
 
 /// What a node takes from loads.
@@ -225,22 +239,23 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Of each point on a free rigid body, in the order of loads: the body, the force on it and where that acts [N, m].
-    pub(super) fn forces_on_free_bodies(&self) -> Vec<(usize, [f64; 3], [f64; 3])> {
+    /// What acts on free rigid bodies, point by point in the order of loads.
+    pub(super) fn forces_on_free_bodies(&self) -> Vec<ForceOnBody> {
         let (room, loads, free) = (&self.workspace.loads, &self.settings.loads, &self.settings.free);
-        let points =
-            room.numbers.iter().zip(&room.points).zip(0..).filter_map(|((&[load, point], felt), number)| {
-                let load = &loads[load as usize];
-                let carrier = load.points[point as usize].particle;
-                let is_here = free[load.body] && room.places[load.body][carrier] != NOWHERE;
-                is_here.then(|| (number, (load.body, felt.felt.force.space(), felt.before.space())))
-            });
-        let mut points: Vec<(u32, (usize, [f64; 3], [f64; 3]))> = points.collect();
+        let points = room.numbers.iter().zip(&room.points).zip(0..);
+        let on_free = points.filter_map(|((&[load, point], loaded), number)| {
+            let load = &loads[load as usize];
+            let carrier = load.points[point as usize].particle;
+            let is_here = free[load.body] && room.places[load.body][carrier] != NOWHERE;
+            let (force, place) = (loaded.felt.force.space(), loaded.before.space());
+            is_here.then_some(ForceOnBody { number, body: load.body, force, place })
+        });
+        let mut forces: Vec<ForceOnBody> = on_free.collect();
         if let Some(among) = &self.among {
-            points = among.gathered(&points).concat();
-            points.sort_unstable_by_key(|(number, _)| *number);
+            forces = among.gathered(&forces).concat();
+            forces.sort_unstable_by_key(|force| force.number);
         }
-        points.into_iter().map(|(_, point)| point).collect()
+        forces
     }
 
     /// What acts on each point, and which nodes feel it.

@@ -322,7 +322,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let partition = Partition::balanced(ranks.count(), None, loads);
         let homes = self.state.bodies.iter().zip(&self.settings.filled).map(|(body, &filled)| {
-            let is_there = filled > 0 && body.particles.len() > 0;
+            let is_there = filled > 0 && !body.particles.is_empty();
             let rank = if is_there { partition.owner(self.block_of(&body.particles, 0)) } else { 0 };
             Home::new(rank, filled)
         });

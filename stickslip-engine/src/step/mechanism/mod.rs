@@ -25,6 +25,7 @@ pub use joint::JointSums;
 pub use surfaces::RigidSurfaces;
 
 use super::Engine;
+use super::loads::ForceOnBody;
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::contact::RigidTouch;
@@ -193,7 +194,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let bodies = &mut self.state.bodies;
         let mut impulses = vec![[0.0; 6]; mechanism.bodies.len()];
         let slot = |body: usize| slot(&mechanism.bodies, body);
-        for (body, force, place) in forces {
+        for ForceOnBody { body, force, place, .. } in forces {
             let (Some(slot), Some(motion)) = (slot(body), &bodies[body].motion) else { continue };
             let arm = (Vector(place) - Vector(motion.center)).0;
             six::add(&mut impulses[slot], dt, &six::at(arm, force));
