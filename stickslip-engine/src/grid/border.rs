@@ -88,7 +88,7 @@ pub struct SentWindow {
 }
 
 /// Axes along which a rank has the first layers of a block only, a bit each: the last axis in the lowest bit, as that
-/// of [`corner_block`].
+/// of `corner_block`.
 pub type Cut = u8;
 
 /// What this rank shares with others.
