@@ -15,23 +15,7 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::{Disk, Ran, Workplace, new_scene};
-
-/// The new scene, coarse and short, with many files.
-const SETTINGS: [&str; 12] = [
-    "--set",
-    "cells_per_radius=4",
-    "--set",
-    "time.end=0.08",
-    "--set",
-    "outputs.tables=0.001",
-    "--set",
-    "outputs.particles=0.004",
-    "--set",
-    "outputs.grid=0.01",
-    "--set",
-    "outputs.checkpoints=0.01",
-];
+use stickslip::{Disk, MANY_FILES, Ran, Workplace, new_scene};
 
 /// What a run meets.
 #[derive(Clone, Copy, Debug)]
@@ -147,7 +131,7 @@ fn workplace() -> Workplace {
 }
 
 fn run_into(out: &str) -> Vec<&str> {
-    [&["run", "scene.toml", "--threads", "1", "--out", out][..], &SETTINGS].concat()
+    [&["run", "scene.toml", "--threads", "1", "--out", out][..], &MANY_FILES].concat()
 }
 
 /// Waits for a run that met its fault, or did not.

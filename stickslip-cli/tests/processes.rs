@@ -7,7 +7,7 @@ mod stickslip;
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::{LONG, Ran, SHORT, Workplace, new_scene, outcome, ranks, record};
+use stickslip::{LONG, Ran, SHORT, Workplace, new_scene, outcome, ranks, record, with, with_results};
 
 /// So many processes of the program with these words, on as few processors as there are.
 fn together(workplace: &Workplace, count: usize, words: &[&str]) -> Command {
@@ -26,22 +26,10 @@ fn run(workplace: &Workplace, count: usize, words: &[&str]) -> Ran {
     Ran { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
-    [words, more].concat()
-}
-
-/// The new scene in a workplace, and in another one with its results by one process.
-fn scene(words: &[&str]) -> Workplace {
-    let workplace = Workplace::new();
-    workplace.write("scene.toml", &new_scene());
-    workplace.succeed(&with(&["run", "scene.toml", "--quiet", "--out", "one"], words));
-    workplace
-}
-
 /// Every file has the bytes of one process's; the summary and the balance are told once.
 #[test]
 fn processes_write_what_one_writes() {
-    let workplace = scene(&SHORT);
+    let workplace = with_results(&SHORT);
     for count in [2, 3] {
         let out = count.to_string();
         let ran = run(&workplace, count, &with(&["run", "scene.toml", "--verbose", "--out", &out], &SHORT));
@@ -70,7 +58,7 @@ fn processes_write_what_one_writes() {
 /// Any of them, the first one too: the launcher ends the others and names it, and another number of processes goes on.
 #[test]
 fn a_run_whose_process_was_killed_goes_on_with_another_number() {
-    let workplace = scene(&LONG);
+    let workplace = with_results(&LONG);
     let out = "killed by the test";
     let mut words = with(&["run", "scene.toml", "--quiet", "--out", out], &LONG);
     for (count, killed) in [(3, 1), (2, 0)] {
@@ -98,7 +86,7 @@ fn a_run_whose_process_was_killed_goes_on_with_another_number() {
 /// `kill -USR1` of the launcher, as batch systems do before a job's time is over: the last step is saved.
 #[test]
 fn a_signal_stops_all_with_a_checkpoint() {
-    let workplace = scene(&LONG);
+    let workplace = with_results(&LONG);
     let launcher = together(&workplace, 2, &with(&["run", "scene.toml", "--out", "stopped"], &LONG))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

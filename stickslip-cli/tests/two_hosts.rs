@@ -22,7 +22,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use stickslip::{Disk, LONG, Ran, SHORT, Workplace, new_scene, outcome, ranks, record};
+use stickslip::{Disk, LONG, MANY_FILES, Ran, SHORT, Workplace, outcome, ranks, record, with, with_results};
 
 /// Each of these tests takes all processors.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -234,10 +234,6 @@ fn succeed(command: Command) -> Ran {
     ran
 }
 
-fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
-    [words, more].concat()
-}
-
 /// Every table, snapshot and picture has the same bytes in two folders, and the last states have the same sum.
 fn assert_same(workplace: &Workplace, one: &str, other: &str) {
     let [one_outcome, outcome] = [one, other].map(|out| outcome(&workplace.path(out)));
@@ -255,38 +251,12 @@ fn checkpoints(workplace: &Workplace, out: &str) -> usize {
     names.filter(|name| name.path().extension().is_some_and(|ending| ending == "checkpoint")).count()
 }
 
-/// With many files.
-const FULL: [&str; 14] = [
-    "--set",
-    "cells_per_radius=4",
-    "--set",
-    "time.end=0.08",
-    "--set",
-    "outputs.tables=0.001",
-    "--set",
-    "outputs.particles=0.004",
-    "--set",
-    "outputs.grid=0.01",
-    "--set",
-    "outputs.checkpoints=0.01",
-    "--threads",
-    "1",
-];
-
-/// The new scene in a workplace, and its results by one process in `one`.
-fn scene(words: &[&str]) -> Workplace {
-    let workplace = Workplace::new();
-    workplace.write("scene.toml", &new_scene());
-    workplace.succeed(&with(&["run", "scene.toml", "--quiet", "--out", "one"], words));
-    workplace
-}
-
 /// One process on each, and two on each.
 #[test]
 #[ignore = "needs root and makes network namespaces"]
 fn two_hosts_write_what_one_process_writes() {
     let _turn = one_at_a_time();
-    let workplace = scene(&SHORT);
+    let workplace = with_results(&SHORT);
     let hosts = Hosts::new(&workplace);
     for count in [2, 4] {
         let mut named = hosts.together(&workplace, count, &[]);
@@ -308,7 +278,7 @@ fn two_hosts_write_what_one_process_writes() {
 #[ignore = "needs root and makes network namespaces"]
 fn processes_on_two_hosts_are_alone_where_they_are_told_so() {
     let _turn = one_at_a_time();
-    let workplace = scene(&SHORT);
+    let workplace = with_results(&SHORT);
     let hosts = Hosts::new(&workplace);
     let mut command = hosts.together(&workplace, 2, &[]);
     command.env("STICKSLIP_ALONE", "1").args(["-x", "STICKSLIP_ALONE", "sh", "-c"]);
@@ -325,7 +295,7 @@ fn processes_on_two_hosts_are_alone_where_they_are_told_so() {
 #[ignore = "needs root and makes network namespaces; takes a minute"]
 fn a_run_whose_link_is_cut_ends_and_goes_on_with_another_number() {
     let _turn = one_at_a_time();
-    let workplace = scene(&LONG);
+    let workplace = with_results(&LONG);
     let hosts = Hosts::new(&workplace);
     for (count, host) in [(2, 0), (4, 1)] {
         let out = format!("cut on host {host}");
@@ -365,10 +335,11 @@ fn a_run_whose_link_is_cut_ends_and_goes_on_with_another_number() {
 #[ignore = "needs root, and mounts a disk"]
 fn a_run_whose_disk_is_full_ends_and_goes_on_with_another_number() {
     let _turn = one_at_a_time();
-    let workplace = scene(&FULL);
+    let words = with(&MANY_FILES, &["--threads", "1"]);
+    let workplace = with_results(&words);
     let disk =
         Disk::mount(workplace.path("disk"), 700).expect("a disk that is full needs root, who may mount one");
-    let words = with(&["run", "scene.toml", "--quiet", "--out", "disk/out"], &FULL);
+    let words = with(&["run", "scene.toml", "--quiet", "--out", "disk/out"], &words);
     let ran = ended(spawn(on_one_host(&workplace, 3, &words)), PATIENCE);
     assert_eq!(ran.code, Some(1), "{}", ran.stderr);
     assert_eq!(ran.stderr.matches("error: cannot write disk/out/").count(), 1, "{}", ran.stderr);

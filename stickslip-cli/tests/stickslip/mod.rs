@@ -22,6 +22,35 @@ pub const LONG: [&str; 8] = [
     "1",
 ];
 
+/// A short run of it with many files.
+pub const MANY_FILES: [&str; 12] = [
+    "--set",
+    "cells_per_radius=4",
+    "--set",
+    "time.end=0.08",
+    "--set",
+    "outputs.tables=0.001",
+    "--set",
+    "outputs.particles=0.004",
+    "--set",
+    "outputs.grid=0.01",
+    "--set",
+    "outputs.checkpoints=0.01",
+];
+
+/// Words, and more of them.
+pub fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    [words, more].concat()
+}
+
+/// The new scene in a workplace, and its results by one process in `one`, as these words have it.
+pub fn with_results(words: &[&str]) -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    workplace.succeed(&with(&["run", "scene.toml", "--quiet", "--out", "one"], words));
+    workplace
+}
+
 /// A small disk of its own, while this lives.
 pub struct Disk(PathBuf);
 
