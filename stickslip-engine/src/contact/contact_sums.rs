@@ -264,7 +264,7 @@ impl ContactSums {
         first.in_order()
     }
 
-    /// With its pairs in the order of their bodies, as they are saved: no pair is found before [`ContactSums::indexed`].
+    /// With its pairs in the order of their bodies, as they are saved: [`ContactSums::indexed`] makes them found again.
     pub fn in_order(mut self) -> Self {
         self.pairs.sort_unstable_by_key(|pair| pair.bodies);
         self.present.clear();

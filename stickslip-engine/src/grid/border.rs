@@ -9,7 +9,7 @@
 //! Blocks that are nobody's home are whole wherever they are held, and so are those near mirrors.
 
 use super::cell_list::{CellList, CornerBlocks, block_of, corner_block, key, reached_blocks};
-use super::{Periods, SIDE, Tile, nodes_at};
+use super::{Periods, SIDE, Tile, count_at, nodes_at};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -356,7 +356,11 @@ impl Border {
 impl Traffic {
     /// How many nodes are sent or come, of windows with this side.
     pub fn nodes<const D: usize>(&self, side: usize) -> usize {
-        self.windows.iter().map(|sent| sent.nodes::<D>(side).count()).sum()
+        let of_window = |sent: &SentWindow| {
+            let corners = (0..1_usize << D).filter(|corner| sent.corners >> corner & 1 == 1);
+            corners.map(|corner| count_at::<D>(corner, sent.cuts[corner], side)).sum::<usize>()
+        };
+        self.windows.iter().map(of_window).sum()
     }
 }
 

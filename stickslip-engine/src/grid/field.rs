@@ -7,6 +7,7 @@ use crate::pages::ask_for_large;
 use crate::tensor::{Real, Vector};
 use crate::threads::{each, each_range};
 use std::marker::PhantomData;
+use std::ops::Range;
 
 /// One body's share of one grid node. What particles give comes first, so that [`Window::add_to`] adds it at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -401,15 +402,7 @@ impl<T: Real, const D: usize> Window<T, D> {
 /// Nodes of a tile's window with this side that are at one of its blocks, and in the first layers that particles reach
 /// from the block before along the axes of the cut, see [`super::Border`].
 pub fn nodes_at<const D: usize>(corner: usize, cut: u8, side: usize) -> impl Iterator<Item = usize> {
-    let reach = side - SIDE as usize;
-    let along = move |axis: usize| {
-        let bit = D - 1 - axis;
-        match (corner >> bit & 1, cut >> bit & 1) {
-            (1, _) => SIDE as usize..side,
-            (_, 1) => 0..reach,
-            _ => 0..SIDE as usize,
-        }
-    };
+    let along = |axis: usize| layers::<D>((corner, cut), side, axis);
     let (rows, last) = (along(0), along(D - 1));
     let middle = if D == 3 { along(1) } else { 0..1 };
     rows.flat_map(move |row| {
@@ -419,6 +412,21 @@ pub fn nodes_at<const D: usize>(corner: usize, cut: u8, side: usize) -> impl Ite
             last.clone().map(move |node| start + node)
         })
     })
+}
+
+/// How many [`nodes_at`] gives.
+pub fn count_at<const D: usize>(corner: usize, cut: u8, side: usize) -> usize {
+    (0..D).map(|axis| layers::<D>((corner, cut), side, axis).len()).product()
+}
+
+/// Their layers along an axis.
+fn layers<const D: usize>((corner, cut): (usize, u8), side: usize, axis: usize) -> Range<usize> {
+    let bit = D - 1 - axis;
+    match (corner >> bit & 1, cut >> bit & 1) {
+        (1, _) => SIDE as usize..side,
+        (_, 1) => 0..side - SIDE as usize,
+        _ => 0..SIDE as usize,
+    }
 }
 
 /// Cells of a tile, a bit each, whose particles reach such nodes.

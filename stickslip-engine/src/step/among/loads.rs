@@ -7,7 +7,7 @@ use crate::exact::ExactSum;
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
 use crate::load::PointForce;
-use crate::ranks::Message;
+use crate::ranks::{Message, bytes_of, read};
 use crate::tensor::Vector;
 use serde::{Deserialize, Serialize};
 
@@ -51,12 +51,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     .collect(),
             })
             .collect();
-        let message = rmp_serde::to_vec(&sent).expect("memory takes what is written");
+        let message = bytes_of(&sent);
         let to = border.outgoing.iter().filter(|_| !sent.is_empty());
         let messages: Vec<Message> = to.map(|traffic| (traffic.rank, message.clone())).collect();
         for (_, message) in among.ranks.exchange(messages) {
-            let came: Vec<SentPoint> = rmp_serde::from_slice(&message).expect("ranks run the same program");
-            for SentPoint { point, felt, nodes } in came {
+            for SentPoint { point, felt, nodes } in read::<Vec<SentPoint>>(&message) {
                 let [load, _] = room.numbers[point as usize];
                 let body = self.settings.loads[load as usize].body;
                 let here = nodes.into_iter().filter_map(|(node, mirrored, weight)| {

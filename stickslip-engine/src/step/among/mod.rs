@@ -13,7 +13,7 @@ use crate::door::RankShare;
 use crate::exact::ExactSum;
 use crate::grid::{
     ActiveBlocks, Blocks, Border, Cut, Disjoint, ForeignTile, Mirrors, Node, NodeSums, Tile, Traffic, add_at,
-    add_corner, locate, nodes_at, nodes_per_block, window_side,
+    add_corner, count_at, locate, nodes_at, nodes_per_block, window_side,
 };
 use crate::lanes::Laned;
 use crate::material::Material;
@@ -30,7 +30,7 @@ use crate::threads::each_range;
 use crate::transfer::Share;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -147,7 +147,7 @@ impl<T: Real> Among<T> {
                 let (parts, cuts) = &mut parts[sent.place as usize];
                 *cuts = sent.cuts;
                 for corner in (0..1_usize << D).filter(|corner| sent.corners >> corner & 1 == 1) {
-                    let count = nodes_at::<D>(corner, cuts[corner], side).count();
+                    let count = count_at::<D>(corner, cuts[corner], side);
                     (parts[corner], rest) = rest.split_at(count * each_node);
                 }
             }
@@ -246,18 +246,15 @@ impl<T: Laned> Among<T> {
         if self.homes.len() < 2 {
             return;
         }
-        let mut others: Vec<(usize, Vec<(u8, BlockSums)>)> = Vec::new();
+        let mut others: BTreeMap<usize, Vec<(u8, BlockSums)>> = BTreeMap::new();
         for (number, touches) in (0..).zip(touches.iter_mut()) {
             touches.retain(|touch| {
                 let keeper = self.keeper(touch.bodies);
-                if keeper != self.ranks.rank() {
-                    let place = others.iter().position(|(rank, _)| *rank == keeper).unwrap_or(others.len());
-                    if place == others.len() {
-                        others.push((keeper, Vec::new()));
-                    }
-                    others[place].1.push((number, *touch));
+                let here = keeper == self.ranks.rank();
+                if !here {
+                    others.entry(keeper).or_default().push((number, *touch));
                 }
-                keeper == self.ranks.rank()
+                here
             });
         }
         let messages = others.iter().map(|(rank, touches)| (*rank, bytes_of(touches))).collect();
