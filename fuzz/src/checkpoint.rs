@@ -3,10 +3,10 @@
 use crate::is_one_in;
 use crate::template::Template;
 use flate2::Compression;
-use flate2::bufread::ZlibDecoder;
 use flate2::write::ZlibEncoder;
+use serde::Serialize;
 use sha2::{Digest, Sha256};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 use stickslip::door::View;
 use stickslip::march::March;
@@ -14,21 +14,31 @@ use stickslip::observe::{Checkpoint, Memory, OutputFolder, Recorder, state_sum};
 use stickslip::scene::StartVelocities;
 use stickslip::step::build;
 
-/// Bytes before the content, and behind it.
+/// Bytes before the content, and behind it; of a place.
 const HEAD: usize = 25;
 const SUM: usize = 32;
+const PLACE: usize = 8;
 
 /// With one of so many outputs look whether they fit, which opens all files.
 const REMEMBERED: u64 = 20;
 
-/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the head
-/// of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed already or by
-/// us.
+/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the first
+/// line of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed already or by
+/// us; or sections and head of version 3, to which the head's place and its sum are added: the four bytes before say how
+/// long sections are.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();
     let whole = match way {
         0 => content.to_vec(),
+        4 => {
+            let Some((length, content)) = content.split_first_chunk() else { return };
+            let sections = content.len().min(u32::from_le_bytes(*length) as usize);
+            let line = [&b"stickslip checkpoint\0"[..], &3_u32.to_le_bytes()].concat();
+            let place = ((HEAD + sections) as u64).to_le_bytes();
+            let sum = Sha256::digest([&line, &content[sections..], &place].concat());
+            [&line, content, &place, &sum[..]].concat()
+        }
         _ => {
             let mut whole = b"stickslip checkpoint\0".to_vec();
             whole.extend(u32::from(way.clamp(1, 2)).to_le_bytes());
@@ -87,10 +97,18 @@ fn rehearse(view: &dyn View, mut memory: Memory) {
 pub fn seeds() -> Vec<Vec<u8>> {
     let template = Template::get();
     let newest = Checkpoint::list(&template.path()).unwrap_or_else(|error| panic!("{error}")).swap_remove(0);
-    let bytes = std::fs::read(newest).expect("it is there");
-    let compressed = &bytes[HEAD..bytes.len() - SUM];
-    let mut content = Vec::new();
-    ZlibDecoder::new(compressed).read_to_end(&mut content).expect("it was compressed");
-    let ways: [(u8, &[u8]); 4] = [(0, &bytes), (1, &content), (2, compressed), (3, &content)];
+    let bytes = std::fs::read(&newest).expect("it is there");
+    let (content, end) = bytes.split_at(bytes.len() - SUM - PLACE);
+    let place = u64::from_le_bytes(*end.first_chunk().expect("a place has eight bytes")) as usize;
+    let sectioned = [&((place - HEAD) as u32).to_le_bytes(), &content[HEAD..]].concat();
+    // As versions 1 and 2 have it.
+    let whole = Checkpoint::read(&newest).expect("it is sound");
+    let mut plain = Vec::new();
+    let mut named = rmp_serde::Serializer::new(&mut plain).with_struct_map();
+    whole.serialize(&mut named).expect("it is memory");
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+    packed.write_all(&plain).expect("it is memory");
+    let packed = packed.finish().expect("it is memory");
+    let ways: [(u8, &[u8]); 5] = [(0, &bytes), (1, &plain), (2, &packed), (3, &plain), (4, &sectioned)];
     ways.map(|(way, bytes)| [&[way], bytes].concat()).into()
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
-use stickslip::observe::{Frame, ParticleFile, Results};
+use stickslip::observe::{Frame, ParticleFile, Performance, Results};
 use stickslip::scene::NamePattern;
 use stickslip::surface::model::Model;
 
@@ -355,8 +355,13 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "front_speeds.csv",
     ];
     drawn.extend(measured.into_iter().filter(|name| folder.join(name).exists()));
+    let Performance { ranks, particles, .. } = &results.manifest().performance;
+    let too_many = ranks.len() > 1 && *particles > DRAWN_AFTER_RANKS;
     // The user waits for them.
-    let (charted, pictured) = rayon::join(|| draw_chart(&results, folder), || draw_last(&results, folder));
+    let (charted, pictured) = rayon::join(
+        || draw_chart(&results, folder),
+        || if too_many { Ok(false) } else { draw_last(&results, folder) },
+    );
     if charted? {
         drawn.push("plot.png");
     }
@@ -369,8 +374,18 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     if folder.join("fringes.png").exists() {
         drawn.push("fringes.png");
     }
-    Ok(drawn.join(", "))
+    let mut told = drawn.join(", ");
+    if too_many && !results.frames().is_empty() {
+        told += &format!(
+            "\n  no picture: it takes all particles in one process; `stickslip render {}` draws it",
+            folder.display()
+        );
+    }
+    Ok(told)
 }
+
+/// Of results of several processes, so many particles are drawn unasked: a picture takes all of them in one.
+const DRAWN_AFTER_RANKS: usize = 1 << 18;
 
 /// Draws what the scene is about into `plot.png`; false if there is nothing to draw.
 fn draw_chart(results: &Results, folder: &Path) -> Result<bool, Failure> {

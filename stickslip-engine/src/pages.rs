@@ -11,9 +11,13 @@ pub fn ask_for_large<T>(first: *const T, count: usize) {
     }
     #[cfg(target_os = "linux")]
     {
-        let start = first.addr().next_multiple_of(LARGE);
-        let end = (first.addr() + bytes) / LARGE * LARGE;
-        // SAFETY: the range is the caller's, and the call changes nothing that a program can see but its speed. Where
+        /// Bytes of a page of most processors.
+        const PAGE: usize = 1 << 12;
+        // With the pages at its ends, which are then asked for as all others: memory that is asked for in part cannot
+        // grow where it is.
+        let start = first.addr() / PAGE * PAGE;
+        let end = (first.addr() + bytes).next_multiple_of(PAGE);
+        // SAFETY: the call changes nothing that a program can see but its speed, whoever has memory in these pages. Where
         // the system does not do as it is asked nothing is lost.
         unsafe { libc::madvise(start as *mut libc::c_void, end - start, libc::MADV_HUGEPAGE) };
     }

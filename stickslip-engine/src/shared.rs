@@ -2,26 +2,50 @@
 //!
 //! The first rank has a [`Simulation`] like any other: [`lead`] gives it. The others [`follow`]: whatever the first one
 //! asks of its simulation, it tells them, and all of them do it together. So a run, its outputs and its checks are
-//! written once, for a simulation, and only the first rank has them. What it is shown of particles (a snapshot, a state
-//! as data, a column) it holds for as long as it looks.
+//! written once, for a simulation, and only the first rank has them. A snapshot, a column or the nodes of the grid it
+//! holds for as long as it looks; all else of particles it sees some at a time. What takes all particles and needs not
+//! be in one place, such as a file of them, each rank does with its own: its [`Program`] knows how.
 
 use crate::column::ColumnDescription;
 use crate::contact::ContactSums;
 use crate::door::{
     BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
-    ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError, SavedBody,
-    SavedColumn, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
-    WrittenValues,
+    ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError, SavedShare,
+    SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError, WrittenValues,
 };
 use crate::lanes::Processor;
-use crate::ranks::{Ranks, Threads, all_of, bytes_of, read};
+use crate::particles::by_number;
+use crate::ranks::{Ranks, Threads, all_of, bytes_of, combined, read};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
 use crate::step::{self, ParticleLoop};
 use rayon::ThreadPoolBuilder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_bytes::ByteBuf;
+use std::ops::Range;
 use std::sync::Arc;
+
+/// What the program of a rank can do, whose engine knows neither files nor their forms. All ranks do it at once, and may
+/// talk to each other while they do.
+#[derive(Clone, Copy)]
+pub struct Program {
+    /// Does what the first one asks with what this rank has, and says how that went.
+    pub act: fn(&dyn Simulation, &dyn Ranks, &[u8]) -> Vec<u8>,
+    /// Finds this rank's share of the particles of a saved state by what the first one asks, in any way that gives each
+    /// to one rank, and shows it, some at a time; or says what is wrong with it.
+    pub find: Finding,
+}
+
+/// See [`Program::find`].
+pub type Finding = fn(&dyn Ranks, &[u8], &mut dyn FnMut(Vec<SavedShare>)) -> Result<(), String>;
+
+impl Default for Program {
+    /// Can do nothing.
+    fn default() -> Self {
+        Program { act: |_, _, _| Vec::new(), find: |_, _, _| Err("nobody knows how".to_string()) }
+    }
+}
 
 /// The simulation of a scene, which other ranks share; they [`follow`] until it is dropped.
 ///
@@ -30,17 +54,21 @@ use std::sync::Arc;
 pub fn lead(
     scene: &Scene,
     path: ParticleLoop,
-    ranks: Arc<dyn Ranks>,
+    (ranks, program): (Arc<dyn Ranks>, Program),
 ) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(Box::new(Leader(Part::new(scene, path, ranks)?)))
+    Ok(Box::new(Leader(Part::new(scene, path, (ranks, program))?)))
 }
 
 /// Does what the first rank asks of the simulation of this scene, until it drops it.
 ///
 /// # Errors
 /// What [`lead`] finds.
-pub fn follow(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Result<(), Problem> {
-    let mut part = Part::new(scene, path, ranks)?;
+pub fn follow(
+    scene: &Scene,
+    path: ParticleLoop,
+    (ranks, program): (Arc<dyn Ranks>, Program),
+) -> Result<(), Problem> {
+    let mut part = Part::new(scene, path, (ranks, program))?;
     while part.obey() {}
     Ok(())
 }
@@ -49,7 +77,7 @@ pub fn follow(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Resul
 /// thread. For tests and measurements; one process with as many threads is faster.
 pub fn among_threads<X: Send>(
     scene: &Scene,
-    count: usize,
+    (count, program): (usize, Program),
     act: impl FnOnce(Result<Box<dyn Simulation>, Problem>) -> X + Send,
 ) -> X {
     let path = ParticleLoop::Lanes(Processor::best());
@@ -60,11 +88,16 @@ pub fn among_threads<X: Send>(
         let first = ranks.next().expect("there is one");
         for other in ranks {
             // What is wrong with the scene, the first one says.
-            scope.spawn(move || pool().install(|| follow(scene, path, Arc::new(other))));
+            scope.spawn(move || pool().install(|| follow(scene, path, (Arc::new(other), program))));
         }
-        pool().install(|| act(lead(scene, path, Arc::new(first))))
+        pool().install(|| act(lead(scene, path, (Arc::new(first), program))))
     })
 }
+
+/// Particles that the first rank is shown at a time, of all ranks together.
+const SHOWN_AT_A_TIME: usize = 1 << 16;
+/// Particles of a body of which it sees the bytes of an entry at a time.
+const BYTES_OF_AT_A_TIME: usize = 1 << 17;
 
 /// What the first rank asks of all, itself included.
 #[derive(Serialize, Deserialize)]
@@ -86,13 +119,17 @@ enum Call {
     Visit(usize),
     Fastest(usize, [f64; 3]),
     Column(usize, String),
+    VisitColumn(usize, String),
     Trace(usize, Vec<u32>),
     Grid,
     Shares,
-    Save,
-    SaveColumns(usize),
+    SaveRest,
+    VisitBytes(usize),
+    Ask(Vec<u8>),
     /// A state follows.
     Restore,
+    /// A state without particles follows.
+    RestoreOnRanks(Vec<u8>),
     /// A state follows; whether it is that of a snapshot, and what becomes of velocities.
     BeginFrom(bool, StartVelocities),
     End,
@@ -105,6 +142,7 @@ struct Part {
     scene: Scene,
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
+    program: Program,
 }
 
 /// The first rank's.
@@ -116,9 +154,13 @@ fn named_bytes_of(said: &impl Serialize) -> Vec<u8> {
 }
 
 impl Part {
-    fn new(scene: &Scene, path: ParticleLoop, ranks: Arc<dyn Ranks>) -> Result<Self, Problem> {
+    fn new(
+        scene: &Scene,
+        path: ParticleLoop,
+        (ranks, program): (Arc<dyn Ranks>, Program),
+    ) -> Result<Self, Problem> {
         let own = step::build_among(scene, path, ranks.clone())?;
-        Ok(Part { own, scene: scene.clone(), path, ranks })
+        Ok(Part { own, scene: scene.clone(), path, ranks, program })
     }
 
     /// What each rank says, by rank, for the first.
@@ -144,17 +186,23 @@ impl Part {
             Call::ContactSums => drop(self.contact_sums()),
             Call::Patches => drop(self.patches()),
             Call::Snapshot => drop(self.snapshot()),
-            Call::Visit(body) => drop(self.views(body)),
+            Call::Visit(body) => self.visit(body, &mut |_| ()),
             Call::Fastest(body, against) => drop(self.fastest(body, against)),
             Call::Column(body, name) => drop(self.column(body, &name)),
+            Call::VisitColumn(body, name) => drop(self.visit_column(body, &name, &mut |_, _| ())),
             Call::Trace(body, numbers) => drop(self.trace(body, &numbers)),
             Call::Grid => drop(self.grid_snapshot()),
             Call::Shares => drop(self.shares()),
-            Call::Save => drop(self.save()),
-            Call::SaveColumns(body) => drop(self.save_columns(body, &mut |_, _| ())),
+            Call::SaveRest => drop(self.save_rest()),
+            Call::VisitBytes(body) => drop(self.visit_bytes(body, &mut |_| ())),
+            Call::Ask(asked) => drop(self.ask(&asked)),
             Call::Restore => {
                 let state = read(&self.ranks.hear_first(&[]));
                 drop(self.begin_anew(|whole| whole.restore(state)));
+            }
+            Call::RestoreOnRanks(asked) => {
+                let rest = read(&self.ranks.hear_first(&[]));
+                drop(self.restore_on_ranks(&rest, &asked));
             }
             Call::BeginFrom(of_snapshot, velocities) => {
                 let state = SavedState { of_snapshot, ..read(&self.ranks.hear_first(&[])) };
@@ -185,13 +233,43 @@ impl Part {
         ParticleSnapshot::merged(self.gathered(&self.own.snapshot()))
     }
 
-    /// The particles of a body as they can be seen, by their numbers.
-    fn views(&self, body: usize) -> Vec<ParticleView> {
+    /// Takes what each rank has, of which this one has so many, some at a time and all ranks at once.
+    fn in_turns(&self, own: usize, take: &mut dyn FnMut(Range<usize>)) {
+        let most = combined(&*self.ranks, &own, usize::max);
+        let at_a_time = (SHOWN_AT_A_TIME / self.ranks.count()).max(1);
+        for first in (0..most).step_by(at_a_time) {
+            take(first.min(own)..(first + at_a_time).min(own));
+        }
+    }
+
+    fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
         let mut own = Vec::new();
         self.own.visit(body, &mut |particle| own.push(*particle));
-        let mut all = self.gathered(&own).concat();
-        all.sort_unstable_by_key(|particle| particle.number);
-        all
+        self.in_turns(own.len(), &mut |some| {
+            self.gathered(&own[some].to_vec()).iter().flatten().for_each(&mut *look);
+        });
+    }
+
+    fn visit_column(
+        &self,
+        body: usize,
+        name: &str,
+        look: &mut dyn FnMut(u32, &[f64]),
+    ) -> Result<(), NoColumn> {
+        let components = self.own.column(body, name)?.description.kind.components();
+        let (mut numbers, mut values) = (Vec::new(), Vec::new());
+        self.own.visit_column(body, name, &mut |number, row| {
+            numbers.push(number);
+            values.extend_from_slice(row);
+        })?;
+        let rows: Vec<&[f64]> = values.chunks_exact(components).collect();
+        self.in_turns(numbers.len(), &mut |some| {
+            let own = (numbers[some.clone()].to_vec(), rows[some].concat());
+            for (numbers, values) in self.gathered::<(Vec<u32>, Vec<f64>)>(&own) {
+                numbers.iter().zip(values.chunks_exact(components)).for_each(|(&n, row)| look(n, row));
+            }
+        });
+        Ok(())
     }
 
     fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
@@ -228,28 +306,58 @@ impl Part {
         self.gathered(&self.own.shares()).concat()
     }
 
-    fn save(&self) -> Option<SavedState> {
-        let own = self.own.save()?;
-        let mut all: Vec<_> = self.gathered(&own.bodies).into_iter().map(Vec::into_iter).collect();
-        let of_body = |_| SavedBody::merged(all.iter_mut().filter_map(Iterator::next).collect());
-        let bodies = own.bodies.iter().filter_map(of_body).collect();
+    fn save_rest(&self) -> Option<SavedState> {
+        let own = self.own.save_rest()?;
         let sums = self.ranks.tell_first(&named_bytes_of(&own.contact_sums));
         let contact_sums = ContactSums::merged(all_of(sums));
-        Some(SavedState { bodies, contact_sums, ..own })
+        Some(SavedState { contact_sums, ..own })
     }
 
-    fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
-        let mut known: Option<(Vec<u32>, Vec<usize>)> = None;
+    /// As [`Simulation::visit_bytes`], of particles with some numbers at a time.
+    fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
+        let mut order: Option<(Vec<u32>, Vec<u32>, u32)> = None;
         self.own.save_columns(body, &mut |numbers, column| {
-            let (numbers, ends) = known.get_or_insert_with(|| {
-                let all = self.gathered(&numbers.to_vec());
-                (all.concat(), all.iter().map(Vec::len).collect())
+            let (order, sorted, end) = order.get_or_insert_with(|| {
+                let order = by_number(numbers);
+                let sorted: Vec<u32> = order.iter().map(|&place| numbers[place as usize]).collect();
+                let end = sorted.last().map_or(0, |last| last + 1);
+                (order, sorted, combined(&*self.ranks, &end, u32::max))
             });
-            let parts = self.gathered(&column);
-            if let Some(column) = SavedColumn::merged(parts, ends) {
-                take(numbers, column);
+            let (width, mut lines) = (column.width, column.sorted_lines(order));
+            look(column.name.as_bytes());
+            // As many entries on all ranks, also where one has no particles.
+            let own = column.bytes.len().checked_div(width * sorted.len()).unwrap_or_default();
+            for _ in 0..combined(&*self.ranks, &own, usize::max) {
+                let line = lines.next().unwrap_or_default();
+                for first in (0..*end).step_by(BYTES_OF_AT_A_TIME) {
+                    let place = |number: u32| sorted.partition_point(|&other| other < number);
+                    let some = place(first)..place(first.saturating_add(BYTES_OF_AT_A_TIME as u32));
+                    let bytes = &line[some.start * width..some.end * width];
+                    let own = (sorted[some].to_vec(), ByteBuf::from(bytes));
+                    let all = self.gathered(&own);
+                    let mut rows: Vec<(u32, &[u8])> = all
+                        .iter()
+                        .flat_map(|(numbers, bytes)| numbers.iter().copied().zip(bytes.chunks_exact(width)))
+                        .collect();
+                    rows.sort_unstable_by_key(|(number, _)| *number);
+                    look(&rows.into_iter().flat_map(|(_, bytes)| bytes).copied().collect::<Vec<u8>>());
+                }
             }
         })
+    }
+
+    /// What the program of each rank says of what all are asked, by rank, for the first.
+    fn ask(&self, asked: &[u8]) -> Vec<Vec<u8>> {
+        let said = (self.program.act)(&*self.own, &*self.ranks, asked);
+        self.ranks.tell_first(&said)
+    }
+
+    fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Result<(), RestoreError> {
+        let (ranks, find) = (self.ranks.clone(), self.program.find);
+        let mut find = |show: &mut dyn FnMut(Vec<SavedShare>)| find(&*ranks, asked, show);
+        let of_all = self.ranks.clone();
+        self.own = step::build_among_saved(&self.scene, self.path, of_all, (rest, &mut find))?;
+        Ok(())
     }
 
     /// Begins with another state, which the whole simulation takes up before it is shared.
@@ -354,7 +462,7 @@ impl View for Leader {
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
-        self.tell(&Call::Visit(body)).views(body).iter().for_each(look);
+        self.tell(&Call::Visit(body)).visit(body, look);
     }
 
     fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
@@ -372,6 +480,15 @@ impl View for Leader {
         Ok(ColumnRef::new(description, numbers, move |row, k| values[row * count + k]))
     }
 
+    fn visit_column(
+        &self,
+        body: usize,
+        name: &str,
+        look: &mut dyn FnMut(u32, &[f64]),
+    ) -> Result<(), NoColumn> {
+        self.tell(&Call::VisitColumn(body, name.to_string())).visit_column(body, name, look)
+    }
+
     fn trace(&self, body: usize, numbers: &[u32]) -> Vec<TracedParticle> {
         self.tell(&Call::Trace(body, numbers.to_vec())).trace(body, numbers)
     }
@@ -386,6 +503,11 @@ impl View for Leader {
 
     fn shares(&self) -> Vec<RankShare> {
         self.tell(&Call::Shares).shares()
+    }
+
+    fn ask_ranks(&self, asked: &dyn Fn() -> Vec<u8>) -> Option<Vec<Vec<u8>>> {
+        let asked = asked();
+        Some(self.tell(&Call::Ask(asked.clone())).ask(&asked))
     }
 }
 
@@ -414,12 +536,12 @@ impl Simulation for Leader {
         Err(WriteError::Shared)
     }
 
-    fn save(&self) -> Option<SavedState> {
-        self.tell(&Call::Save).save()
+    fn save_rest(&self) -> Option<SavedState> {
+        self.tell(&Call::SaveRest).save_rest()
     }
 
-    fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
-        self.tell(&Call::SaveColumns(body)).save_columns(body, take)
+    fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
+        self.tell(&Call::VisitBytes(body)).visit_bytes(body, look)
     }
 
     fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {
@@ -433,41 +555,10 @@ impl Simulation for Leader {
         part.ranks.hear_first(&named_bytes_of(&state));
         part.begin_anew(|whole| whole.restore(state))
     }
-}
 
-impl SavedBody {
-    /// A body whose parts ranks have.
-    fn merged(mut parts: Vec<SavedBody>) -> Option<SavedBody> {
-        let counts: Vec<usize> = parts.iter().map(|part| part.numbers.len()).collect();
-        let columns = (0..parts.first()?.columns.len()).filter_map(|column| {
-            let of_part = |part: &mut SavedBody| SavedColumn {
-                name: part.columns[column].name.clone(),
-                width: part.columns[column].width,
-                bytes: std::mem::take(&mut part.columns[column].bytes),
-            };
-            SavedColumn::merged(parts.iter_mut().map(of_part).collect(), &counts)
-        });
-        let columns = columns.collect();
-        let numbers = parts.iter().flat_map(|part| &part.numbers).copied().collect();
-        let first = parts.swap_remove(0);
-        // Each rank misses those of the others.
-        let missing = first.missing.saturating_sub(counts[1..].iter().sum());
-        Some(SavedBody { columns, numbers, missing, ..first })
-    }
-}
-
-impl SavedColumn {
-    /// A column whose parts ranks have, of so many particles each: entry by entry, those of one behind the other.
-    fn merged(parts: Vec<SavedColumn>, counts: &[usize]) -> Option<SavedColumn> {
-        let width = parts.first()?.width;
-        let entries = parts.iter().zip(counts).find(|(_, count)| **count > 0);
-        let entries = entries.map_or(0, |(part, count)| part.bytes.len() / (width * count));
-        let mut bytes = Vec::with_capacity(parts.iter().map(|part| part.bytes.len()).sum());
-        for entry in 0..entries {
-            for (part, count) in parts.iter().zip(counts) {
-                bytes.extend_from_slice(&part.bytes[entry * width * count..(entry + 1) * width * count]);
-            }
-        }
-        parts.into_iter().next().map(|first| SavedColumn { bytes, ..first })
+    fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Option<Result<(), RestoreError>> {
+        let part = self.tell_mut(&Call::RestoreOnRanks(asked.to_vec()));
+        part.ranks.hear_first(&named_bytes_of(rest));
+        Some(part.restore_on_ranks(rest, asked))
     }
 }

@@ -106,6 +106,22 @@ def enclosed(corners: np.ndarray, triangles: np.ndarray, plane: bool) -> float:
 
 
 @pytest.mark.parametrize("read", READERS)
+def test_a_file_in_pieces_is_opened(tmp_path: Path, read: Callable[[Path], Found]):
+    """Of more particles than a piece holds."""
+    scene = ss.Scene("plane-strain", 0.1)
+    scene.material("rubber", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
+    scene.body("plate", material="rubber", shape=ss.box((0, 0), (15, 15)), velocity=(1, 0))
+    scene.time(end="1 us").outputs(particles="1 us").run(tmp_path / "results")
+    path = tmp_path / "results" / "particles" / "00001.vtu"
+    assert path.read_bytes().count(b"<Piece ") == 2
+    points, cells, arrays = read(path)
+    frame = ss.Results(tmp_path / "results").frame(1)
+    assert len(points) == 90000 and np.array_equal(arrays["number"].ravel(), np.arange(90000))
+    assert np.array_equal(points, frame["position"]) and np.array_equal(cells["vertex"].ravel(), np.arange(90000))
+    assert np.array_equal(arrays["stress"].reshape(-1, 6), frame["stress"])
+
+
+@pytest.mark.parametrize("read", READERS)
 def test_every_file_of_a_run_is_opened(with_grids, read: Callable[[Path], Found]):
     results = with_grids
     frames = [results.frame(number) for number in range(len(results.times))]

@@ -4,7 +4,7 @@
 
 #![forbid(unsafe_code)]
 
-use stickslip_engine::{door, exact};
+use stickslip_engine::{door, exact, ranks};
 use stickslip_scene::{check, column, geometry, rigid, scene, tensor};
 
 // RGB images: PNG files and animations.

@@ -16,7 +16,7 @@ use same_run::{StopAfter, assert_same_run, options};
 use std::fs;
 use std::path::Path;
 use stickslip::door::Simulation;
-use stickslip::observe::{Checkpoint, Results, Status};
+use stickslip::observe::{Checkpoint, PROGRAM, Results, Status};
 use stickslip::run::{RunError, Summary, resume, run, run_with};
 use stickslip::scene::{Scene, parse};
 use stickslip::shared::among_threads;
@@ -392,7 +392,7 @@ fn scene(folder: &Path, text: &str) -> Scene {
 
 /// What the first of so many ranks gives, which share the simulation of a scene.
 fn among<X: Send>(scene: &Scene, count: usize, act: impl FnOnce(&mut dyn Simulation) -> X + Send) -> X {
-    among_threads(scene, count, |simulation| act(&mut *simulation.expect("ranks can share it")))
+    among_threads(scene, (count, PROGRAM), |simulation| act(&mut *simulation.expect("ranks can share it")))
 }
 
 fn start(scene: &Scene, count: usize, out: &Path) -> Summary {

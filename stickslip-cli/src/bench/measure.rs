@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 use stickslip::door::{RankShare, Simulation};
 use stickslip::march::March;
-use stickslip::observe::present_state_sum;
+use stickslip::observe::{PROGRAM, present_state_sum};
 use stickslip::run::RunOptions;
 use stickslip::scene::Scene;
 use stickslip::shared;
@@ -148,7 +148,7 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
         stickslip::scene::parse("benchmark", &order.scene, &order.overrides).map_err(Failure::input)?;
     let located = |problem| Failure::input(loaded.source.locate(problem));
     if let BenchTask::Ranks(effort, count) = order.task {
-        return shared::among_threads(&loaded.scene, count, |simulation| {
+        return shared::among_threads(&loaded.scene, (count, PROGRAM), |simulation| {
             let mut simulation = simulation.map_err(located)?;
             let mut sample = BenchSample {
                 bodies: loaded.scene.bodies.len(),

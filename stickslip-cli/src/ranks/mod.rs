@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 use stickslip::door::Simulation;
 use stickslip::lanes::Processor;
-use stickslip::observe::SceneSource;
+use stickslip::observe::{PROGRAM, SceneSource};
 use stickslip::ranks::Ranks;
 use stickslip::scene::Loaded;
 use stickslip::shared;
@@ -209,7 +209,7 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
         )));
     }
     let path = ParticleLoop::Lanes(Processor::best());
-    let lead = shared::lead(&loaded.scene, path, ranks.clone());
+    let lead = shared::lead(&loaded.scene, path, (ranks.clone(), PROGRAM));
     lead.map_err(|problem| Failure::input(loaded.source.locate(problem)))
 }
 
@@ -226,7 +226,7 @@ fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>) -> bool {
     if let (true, Ok(mut loaded)) = (all_read, read) {
         loaded.scene.time.end = end;
         // What is wrong with the scene, the first one tells.
-        let _ = shared::follow(&loaded.scene, ParticleLoop::Lanes(Processor::best()), ranks);
+        let _ = shared::follow(&loaded.scene, ParticleLoop::Lanes(Processor::best()), (ranks, PROGRAM));
     }
     true
 }

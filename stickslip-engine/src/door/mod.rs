@@ -10,11 +10,12 @@ mod snapshot;
 pub use crate::particles::{ColumnPlace, NumberFormat};
 pub use column::{ColumnRef, NoColumn, WRITABLE, WriteError};
 pub(crate) use saved::SavedUnbounded;
-pub use saved::{RestoreError, SavedBody, SavedColumn, SavedState};
+pub use saved::{RestoreError, SavedBody, SavedColumn, SavedShare, SavedState};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
 use crate::outside::OutsideFault;
+use crate::particles::by_number;
 use crate::ranks::SentAndWaited;
 use crate::rigid::Pose;
 use crate::scene::StartVelocities;
@@ -77,6 +78,10 @@ pub trait View {
     }
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
+    /// Of these the particles from a body and a number in it up to, not with, another.
+    fn snapshot_between(&self, ends: [(u32, u32); 2]) -> ParticleSnapshot {
+        self.snapshot().only(|body, number| (ends[0]..ends[1]).contains(&(body, number)))
+    }
     /// Shows every particle of a body to `look`, in no order that means anything.
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
         let all = self.snapshot();
@@ -114,6 +119,23 @@ pub trait View {
     fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
         Err(NoColumn::among(&self.columns(body), name))
     }
+    /// Shows a column of a body's particles to `look`, the number and the components in space of one after the other, in
+    /// no order that means anything; where ranks share them, only some of them are in one place at a time.
+    ///
+    /// # Errors
+    /// As [`View::column`].
+    fn visit_column(
+        &self,
+        body: usize,
+        name: &str,
+        look: &mut dyn FnMut(u32, &[f64]),
+    ) -> Result<(), NoColumn> {
+        let column = self.column(body, name)?;
+        let (components, values) = (column.description.kind.components(), column.values());
+        let rows = column.numbers().iter().zip(values.chunks_exact(components));
+        rows.for_each(|(&number, row)| look(number, row));
+        Ok(())
+    }
     /// Where a column of a body's particles lies in memory; `number` is one. None if the particles have no such column,
     /// and of a rigid body without bounds, which gets other particles as bodies come near.
     fn column_place(&self, _body: usize, _name: &str) -> Option<ColumnPlace> {
@@ -130,6 +152,11 @@ pub trait View {
     /// What each of the ranks that share the simulation has of it and did for it; nothing where nobody shares it.
     fn shares(&self) -> Vec<RankShare> {
         Vec::new()
+    }
+    /// Has the program of each rank do something with what that rank has, all at once, see
+    /// [`crate::shared::Program`]: what each says, by rank. None where nobody shares the simulation.
+    fn ask_ranks(&self, _asked: &dyn Fn() -> Vec<u8>) -> Option<Vec<Vec<u8>>> {
+        None
     }
 }
 
@@ -164,14 +191,32 @@ pub trait Simulation: View + Send {
     fn write(&mut self, body: usize, name: &str, _values: &[f64]) -> Result<(), WriteError> {
         Err(NoColumn::among(&self.columns(body), name).into())
     }
-    /// The state as data, to be taken up by another simulation of the same scene; `None` of one that has none.
+    /// The state as data, to be taken up by another simulation of the same scene; `None` of one that has none, or that
+    /// ranks share.
     fn save(&self) -> Option<SavedState> {
         None
     }
+    /// The state [without particles](SavedState::without_particles); `None` of a simulation that has none.
+    fn save_rest(&self) -> Option<SavedState> {
+        None
+    }
+    /// The particles in [`Simulation::save`], body by body, at most so many at a time.
+    fn save_shares(&self, _most: usize, _take: &mut dyn FnMut(Vec<SavedShare>)) {}
     /// The columns of a body in [`Simulation::save`], one after the other, so that no more than one is copied at a
     /// time, and the numbers of its particles in the order of memory. False of a simulation that has no state as data.
     fn save_columns(&self, _body: usize, _take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
         false
+    }
+    /// The bytes of what the particles of a body have: of each column its name, and each of its entries for one particle
+    /// after the other, ordered by number. Where ranks share them, only some are in one place at a time. False of a
+    /// simulation that has no state as data.
+    fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
+        let mut order: Option<Vec<u32>> = None;
+        self.save_columns(body, &mut |numbers, column| {
+            let order = order.get_or_insert_with(|| by_number(numbers));
+            look(column.name.as_bytes());
+            column.sorted_lines(order).for_each(|line| look(&line));
+        })
     }
     /// Lets bodies begin as those of the same name were in the state of another run, before the first step. The others
     /// begin as they are.
@@ -187,6 +232,14 @@ pub trait Simulation: View + Send {
     /// It is the state of another scene; then nothing is changed.
     fn restore(&mut self, _state: SavedState) -> Result<(), RestoreError> {
         Err(RestoreError("this simulation takes up none".to_string()))
+    }
+    /// The same of ranks that share the simulation: the state without particles, which the program of each rank finds
+    /// by what it is asked, see [`crate::shared::Program`]. None where nobody shares it.
+    ///
+    /// # Errors
+    /// It is the state of another scene, or a rank does not find its share; then the simulation has no particles.
+    fn restore_on_ranks(&mut self, _rest: &SavedState, _asked: &[u8]) -> Option<Result<(), RestoreError>> {
+        None
     }
 }
 

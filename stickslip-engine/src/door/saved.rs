@@ -7,6 +7,7 @@ use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
 use crate::step::{JointSums, RelaxationProgress, TouchForce, WallSums};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
 /// that takes it up takes the same steps, bit for bit.
@@ -60,6 +61,45 @@ pub struct SavedState {
 }
 
 impl SavedState {
+    /// All of it but particles: bodies have neither numbers nor columns, but those that have no particles anywhere keep
+    /// the names of columns.
+    pub fn without_particles(&self) -> Self {
+        let names = |body: &SavedBody| match body.numbers.is_empty() {
+            true => body.columns.iter().map(SavedColumn::emptied).collect(),
+            false => Vec::new(),
+        };
+        let body = |body: &SavedBody| SavedBody {
+            name: body.name.clone(),
+            numbers: Vec::new(),
+            columns: names(body),
+            missing: body.missing,
+            motion: body.motion,
+        };
+        SavedState {
+            time: self.time,
+            steps: self.steps,
+            phase: self.phase,
+            bodies: self.bodies.iter().map(body).collect(),
+            signal: self.signal,
+            damping: self.damping,
+            impacts: self.impacts,
+            gravity_work: self.gravity_work,
+            relaxation: self.relaxation,
+            loads: self.loads.clone(),
+            contact_sums: self.contact_sums.clone(),
+            unbounded: self.unbounded.clone(),
+            moved: self.moved.clone(),
+            joints: self.joints.clone(),
+            springs: self.springs.clone(),
+            walls: self.walls.clone(),
+            longest_rigid: self.longest_rigid,
+            touch_forces: self.touch_forces.clone(),
+            removed: self.removed.clone(),
+            written: self.written.clone(),
+            of_snapshot: self.of_snapshot,
+        }
+    }
+
     /// What a snapshot of a run at a time [s] knows of its state, for [`crate::door::Simulation::begin_from`]; it is
     /// none that a simulation of the same scene could take up. `names` are those of its bodies, by their numbers.
     ///
@@ -116,6 +156,55 @@ impl SavedState {
 }
 
 impl SavedColumn {
+    /// Its entries, each the numbers of particles in an order of their places.
+    pub fn sorted_lines<'a>(&'a self, order: &'a [u32]) -> impl Iterator<Item = Vec<u8>> + 'a {
+        // A state that was read may be anybody's; without a width or particles there is nothing.
+        let each = self.width.checked_mul(order.len()).unwrap_or_default();
+        let lines = self.bytes.chunks_exact(each.max(1)).filter(move |_| each > 0);
+        lines.map(|line| {
+            order
+                .iter()
+                .flat_map(|&place| &line[place as usize * self.width..][..self.width])
+                .copied()
+                .collect()
+        })
+    }
+
+    /// The same column of some of so many particles.
+    fn part(&self, count: usize, particles: Range<usize>) -> SavedColumn {
+        let lines = self.bytes.chunks_exact((self.width * count).max(1));
+        let part = particles.start * self.width..particles.end * self.width;
+        SavedColumn { bytes: lines.flat_map(|line| &line[part.clone()]).copied().collect(), ..self.emptied() }
+    }
+
+    /// The same column of no particles.
+    fn emptied(&self) -> SavedColumn {
+        SavedColumn { name: self.name.clone(), width: self.width, bytes: Vec::new() }
+    }
+
+    /// A column of which there are parts, each of so many particles, at least one; none if they are not of one column.
+    fn joined(parts: Vec<(usize, SavedColumn)>) -> Option<SavedColumn> {
+        let (_, like) = parts.first()?;
+        let entries_of = |(count, part): &(usize, SavedColumn)| {
+            let each = part.width.checked_mul(*count).filter(|&each| each > 0)?;
+            let whole = part.bytes.len().is_multiple_of(each);
+            let same = whole && (&part.name, part.width) == (&like.name, like.width);
+            same.then(|| part.bytes.len() / each)
+        };
+        let entries = entries_of(parts.first()?)?;
+        if parts.iter().any(|part| entries_of(part) != Some(entries)) {
+            return None;
+        }
+        let mut bytes = Vec::with_capacity(parts.iter().map(|(_, part)| part.bytes.len()).sum());
+        for entry in 0..entries {
+            for (count, part) in &parts {
+                let each = part.width * count;
+                bytes.extend_from_slice(&part.bytes[entry * each..][..each]);
+            }
+        }
+        Some(SavedColumn { bytes, ..like.emptied() })
+    }
+
     /// Some rows of a column with all components in space.
     fn of((name, kind, values): (&str, Kind, &[f64]), rows: &[usize], dimension: usize) -> Self {
         let places = (0..kind.entries(dimension)).map(|entry| kind.place(dimension, entry));
@@ -140,6 +229,49 @@ pub struct SavedBody {
     pub(crate) missing: usize,
     /// Where it is and how it moves, if it is rigid.
     pub(crate) motion: Option<RigidState>,
+}
+
+/// Some particles of a body between two steps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedShare {
+    /// The body's place in the scene.
+    pub body: usize,
+    /// Each particle's number in its body.
+    pub numbers: Vec<u32>,
+    /// What they have.
+    pub columns: Vec<SavedColumn>,
+}
+
+impl SavedBody {
+    /// Some of its particles, which is the body at this place in the scene.
+    pub fn share(&self, body: usize, particles: Range<usize>) -> SavedShare {
+        let count = self.numbers.len();
+        let columns = self.columns.iter().map(|column| column.part(count, particles.clone()));
+        SavedShare { body, numbers: self.numbers[particles.clone()].to_vec(), columns: columns.collect() }
+    }
+
+    /// Gives it the particles in these shares; false if they do not have the same columns.
+    pub fn fill(&mut self, mut shares: Vec<SavedShare>) -> bool {
+        shares.retain(|share| !share.numbers.is_empty());
+        self.numbers = shares.iter().flat_map(|share| &share.numbers).copied().collect();
+        let Some(first) = shares.first() else { return true };
+        let count = first.columns.len();
+        if shares.iter().any(|share| share.columns.len() != count) {
+            return false;
+        }
+        let of_column = |column: usize| {
+            let part = |share: &mut SavedShare| {
+                let of = &mut share.columns[column];
+                let bytes = std::mem::take(&mut of.bytes);
+                (share.numbers.len(), SavedColumn { bytes, ..of.emptied() })
+            };
+            SavedColumn::joined(shares.iter_mut().map(part).collect())
+        };
+        let columns: Option<Vec<SavedColumn>> = (0..count).map(of_column).collect();
+        let fits = columns.is_some();
+        self.columns = columns.unwrap_or_default();
+        fits
+    }
 }
 
 /// A column of particles.

@@ -2,6 +2,7 @@
 
 use crate::column::{self, ColumnDescription, Kind};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Where a snapshot's columns come from: a running engine, or a file.
 pub trait ColumnSource {
@@ -123,6 +124,11 @@ macro_rules! snapshot {
                     $($name: picked(all.$name, &rows),)*
                     history: all.history.into_iter().map(|column| column.only(&rows)).collect(),
                 }
+            }
+
+            /// The particles in some rows that follow one another.
+            pub fn rows(&self, rows: Range<usize>) -> Self {
+                self.of_rows(&rows.collect::<Vec<_>>())
             }
 
             /// The particles in these rows.

@@ -150,26 +150,35 @@ impl<T: Real, const D: usize> Particles<T, D> {
     /// Makes room for so many particles, those that are there at the same places.
     fn make_room(&mut self, count: usize) {
         if count > self.stride {
-            self.move_to(Self::stride_of(count + count / 4));
+            self.give_room(Self::stride_of(count + count / 16));
         }
     }
 
     /// Gives back the memory of particles that are gone.
     pub fn fit(&mut self) {
-        self.move_to(Self::stride_of(self.len + self.guests));
+        self.give_room(Self::stride_of(self.len + self.guests));
     }
 
-    /// Moves to other memory, with this room for a column.
-    fn move_to(&mut self, stride: usize) {
-        let mut columns = vec![T::ZERO; stride * Self::columns_of(self.own())];
-        ask_for_large(columns.as_ptr(), columns.len());
-        let mut numbers = vec![0; 2 * stride];
-        let (there, first, first_number) = (self.len + self.guests, self.first(), self.first_number());
-        for entry in 0..self.entries() {
-            let line = &self.columns[first + entry * self.stride..][..there];
-            columns[entry * stride..][..there].copy_from_slice(line);
+    /// Gives columns this room, which is enough, in the memory that is there if it can grow or shrink.
+    fn give_room(&mut self, stride: usize) {
+        self.settle();
+        let (there, columns, before) = (self.len + self.guests, Self::columns_of(self.own()), self.stride);
+        let move_column = |columns: &mut Vec<T>, entry: usize| {
+            columns.copy_within(entry * before..entry * before + there, entry * stride);
+        };
+        if stride > before {
+            self.columns.reserve_exact(stride * columns - self.columns.len());
+            self.columns.resize(stride * columns, T::ZERO);
+            self.numbers.resize(2 * stride, 0);
+            (0..self.entries()).rev().for_each(|entry| move_column(&mut self.columns, entry));
+            ask_for_large(self.columns.as_ptr(), self.columns.len());
+        } else {
+            (0..self.entries()).for_each(|entry| move_column(&mut self.columns, entry));
+            self.columns.truncate(stride * columns);
+            self.numbers.truncate(2 * stride);
+            self.columns.shrink_to_fit();
+            self.numbers.shrink_to_fit();
         }
-        numbers[..there].copy_from_slice(&self.numbers[first_number..][..there]);
-        (self.columns, self.numbers, self.stride, self.later) = (columns, numbers, stride, false);
+        self.stride = stride;
     }
 }

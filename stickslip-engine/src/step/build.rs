@@ -1,6 +1,6 @@
 //! From a scene to a simulation.
 
-use super::among::Home;
+use super::among::{Find, Home};
 use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
@@ -14,8 +14,8 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::{RemovedParticles, RestoreError, Simulation, WrittenValues};
-use crate::geometry::{Curved, Filling, Mirror, MirroredShape, ParticleSite, Shape, fill};
+use crate::door::{RemovedParticles, RestoreError, SavedState, Simulation, WrittenValues};
+use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill, sites};
 use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress::{self, InitialStress};
 use crate::lanes::{Laned, Processor};
@@ -47,14 +47,14 @@ pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
 /// # Errors
 /// What [`check::problems`] finds.
 pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(build_for(scene, path, None)?)
+    Ok(build_for(scene, path, Keeping::All)?)
 }
 
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
 /// `step`, `bodies`, `ledger` and what else is of the whole ask the others. What is of single particles is of those that
-/// this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`, `save`,
-/// `save_columns`; `contact_sums` and `patches` are of the pairs whose sums it keeps. Nobody can write to it or give it
-/// another state; [`crate::shared`] has what runs need.
+/// this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`, `save_shares`,
+/// `save_columns`; `contact_sums` and `patches`, and these in `save_rest`, are of the pairs whose sums it keeps. Nobody
+/// can write to it or give it another state; [`crate::shared`] has what runs need.
 ///
 /// # Errors
 /// What [`check::problems`] finds, and what ranks cannot share yet.
@@ -64,7 +64,7 @@ pub fn build_among(
     ranks: Arc<dyn Ranks>,
 ) -> Result<Box<dyn Simulation>, Problem> {
     super::among::can_be_shared(scene)?;
-    Ok(build_for(scene, path, Some(ranks))?)
+    Ok(build_for(scene, path, Keeping::Share(ranks))?)
 }
 
 /// [`build_among`], of a whole that begins in another way than the scene says.
@@ -77,53 +77,94 @@ pub(crate) fn build_among_from(
     ranks: Arc<dyn Ranks>,
     begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
 ) -> Result<Box<dyn Simulation>, RestoreError> {
-    let mut whole = build_for(scene, path, None).map_err(|problem| RestoreError(problem.to_string()))?;
+    let mut whole =
+        build_for(scene, path, Keeping::All).map_err(|problem| RestoreError(problem.to_string()))?;
     begin(&mut *whole)?;
     whole.share(ranks);
     Ok(whole)
+}
+
+/// [`build_among`], of a saved state: without particles, of which `find` gives each rank some.
+///
+/// # Errors
+/// It is of another scene, or a rank does not find its particles: all ranks say so.
+pub(crate) fn build_among_saved(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Arc<dyn Ranks>,
+    (rest, find): (&SavedState, Find),
+) -> Result<Box<dyn Simulation>, RestoreError> {
+    let mut empty =
+        build_for(scene, path, Keeping::None).map_err(|problem| RestoreError(problem.to_string()))?;
+    empty.take_up_share((scene, ranks), rest, find)?;
+    Ok(empty)
+}
+
+/// Which particles of a scene a simulation begins with.
+enum Keeping {
+    All,
+    None,
+    /// Those of one of several ranks.
+    Share(Arc<dyn Ranks>),
 }
 
 /// A simulation that ranks can share.
 trait Shareable: Simulation {
     /// Keeps this rank's part.
     fn share(&mut self, ranks: Arc<dyn Ranks>);
+
+    /// Takes up this rank's share of a saved state, with no particles before.
+    ///
+    /// # Errors
+    /// As [`build_among_saved`].
+    fn take_up_share(
+        &mut self,
+        of: (&Scene, Arc<dyn Ranks>),
+        rest: &SavedState,
+        find: Find,
+    ) -> Result<(), RestoreError>;
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
     fn share(&mut self, ranks: Arc<dyn Ranks>) {
         self.divide(ranks);
     }
+
+    fn take_up_share(
+        &mut self,
+        of: (&Scene, Arc<dyn Ranks>),
+        rest: &SavedState,
+        find: Find,
+    ) -> Result<(), RestoreError> {
+        self.take_up_among(of, rest, find)
+    }
 }
 
-/// The whole simulation, or the part of one of several ranks.
-fn build_for(
-    scene: &Scene,
-    path: ParticleLoop,
-    ranks: Option<Arc<dyn Ranks>>,
-) -> Result<Box<dyn Shareable>, Problem> {
+/// The simulation with these particles.
+fn build_for(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Box<dyn Shareable>, Problem> {
     match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
-            with_basis::<f64, 2>(scene, path, ranks)
+            with_basis::<f64, 2>(scene, path, keeping)
         }
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
-            with_basis::<f32, 2>(scene, path, ranks)
+            with_basis::<f32, 2>(scene, path, keeping)
         }
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, ranks),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, ranks),
+        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, keeping),
+        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, keeping),
     }
 }
 
 fn with_basis<T: Laned, const D: usize>(
     scene: &Scene,
     path: ParticleLoop,
-    ranks: Option<Arc<dyn Ranks>>,
+    keeping: Keeping,
 ) -> Result<Box<dyn Shareable>, Problem> {
     Ok(match scene.discretization.basis {
-        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::of(scene, path, ranks)?),
+        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::of(scene, path, keeping)?),
         // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::of(scene, path, ranks)?),
-        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::of(scene, path, ranks)?),
-        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::of(scene, path, ranks)?),
+        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::of(scene, path, keeping)?),
+        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::of(scene, path, keeping)?),
+        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::of(scene, path, keeping)?),
     })
 }
 
@@ -133,13 +174,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// # Errors
     /// What [`check::problems`] finds.
     pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
-        Self::of(scene, path, None)
+        Self::of(scene, path, Keeping::All)
     }
 
-    /// The same, or the part of it that one of several ranks has.
-    fn of(scene: &Scene, path: ParticleLoop, ranks: Option<Arc<dyn Ranks>>) -> Result<Self, Problem> {
+    /// The same with these particles.
+    fn of(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Self, Problem> {
         check::problems(scene)?;
-        let Some(ranks) = ranks else { return Self::keeping(scene, path, |_| true) };
+        let ranks = match keeping {
+            Keeping::All => return Self::keeping(scene, path, None, |_| true),
+            Keeping::None => {
+                let volumes = scene.bodies.iter().map(|body| walk(scene, body).map(|site| site.volume).sum());
+                return Self::keeping(scene, path, Some(volumes.collect()), |_| false);
+            }
+            Keeping::Share(ranks) => ranks,
+        };
         let (origin, periods) = (origin(scene), periods::<D>(scene));
         let block = |x: [f64; 3]| {
             let cell = scene.discretization.cell;
@@ -150,28 +198,34 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut loads: HashMap<[i32; D], u64> = HashMap::new();
         // Of each body, the block in which its first particle begins, and how many there are.
         let mut begins = Vec::new();
+        let mut volumes = Vec::new();
         for body in &scene.bodies {
-            let filling = fill(&body.shape, &scene.lattice(body), body.particles);
-            let sites = filling.as_ref().map_or(&[][..], |filling| &filling.sites);
-            begins.push((sites.first().map(|site| block(site.position)), sites.len()));
-            for site in sites {
-                *loads.entry(block(site.position)).or_default() += 1;
+            let (mut first, mut count, mut volume) = (None, 0, 0.0);
+            for site in walk(scene, body) {
+                let block = block(site.position);
+                *loads.entry(block).or_default() += 1;
+                (first, count, volume) = (first.or(Some(block)), count + 1, volume + site.volume);
             }
+            begins.push((first, count));
+            volumes.push(volume);
         }
         let partition = Partition::balanced(ranks.count(), None, loads);
         let home = |&(first, count): &(Option<[i32; D]>, usize)| {
             Home::new(first.map_or(0, |block| partition.owner(block)), count)
         };
         let homes = begins.iter().map(home).collect();
-        let mut engine = Self::keeping(scene, path, |x| partition.owner(block(x)) == ranks.rank())?;
+        let own = |x| partition.owner(block(x)) == ranks.rank();
+        let mut engine = Self::keeping(scene, path, Some(volumes), own)?;
         engine.join(ranks, (partition, homes));
         Ok(engine)
     }
 
-    /// The simulation with the particles that begin where some are wanted.
+    /// The simulation with the particles that begin where some are wanted: of bodies whose volumes are known, the others
+    /// are never there.
     fn keeping(
         scene: &Scene,
         path: ParticleLoop,
+        volumes: Option<Vec<f64>>,
         wanted: impl Fn([f64; 3]) -> bool,
     ) -> Result<Self, Problem> {
         let cell = scene.discretization.cell;
@@ -186,9 +240,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let heated = heated_bodies(scene);
         for (number, body) in scene.bodies.iter().enumerate() {
             let sites = scene.lattice(body);
-            let filled = fill(&body.shape, &sites, body.particles);
-            let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), Filling::center);
-            let filling = filled.unwrap_or_else(|| {
+            let volume = volumes.as_ref().map(|volumes| volumes[number]);
+            let filled = Filled::of(scene, body, (volume, &wanted));
+            let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), |filled| filled.center);
+            let filled = filled.unwrap_or_else(|| {
                 unbounded.push(Unbounded {
                     body: bodies.len(),
                     shape: body.shape.clone(),
@@ -200,7 +255,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     served: Vec::new(),
                     pose: None,
                 });
-                Filling { sites: Vec::new() }
+                Filled::default()
             });
             let free = body.as_free_rigid().and_then(|free| {
                 let properties = MassProperties::of(scene, body, free)?;
@@ -226,15 +281,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 _ => [0.0; 3],
             };
             // The particles of a free rigid body weigh what it weighs, whatever its mass is given as.
-            let volume = || filling.sites.iter().map(|site| site.volume).sum::<f64>();
             let density = match motion.as_ref().and_then(RigidMotion::as_free) {
-                Some(free) => free.mass / volume(),
+                Some(free) => free.mass / filled.volume,
                 None => scene.materials[body.material].density,
             };
-            all_filled.push(filling.sites.len());
-            let sites = filling.sites.iter().zip(0..);
-            let kept: Vec<u32> =
-                sites.filter(|(site, _)| wanted(site.position)).map(|(_, number)| number).collect();
+            all_filled.push(filled.count);
             bodies.push(Body {
                 name: body.name.clone(),
                 material: material(scene, body)?,
@@ -243,7 +294,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 particles: {
                     let own = own_columns(scene, body, heated.contains(&number));
                     let stresses = initial_stress::of_body(scene, number)?;
-                    particles((own, &stresses), (&filling, &kept), (velocity, turning, density))
+                    particles((own, &stresses), &filled.kept, (velocity, turning, density))
                 },
                 motion,
                 whole: whole::<D>(scene, number),
@@ -325,6 +376,52 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
+/// The particles that fill a body, one after the other; none of a body without bounds.
+pub(super) fn walk<'a>(scene: &Scene, body: &'a scene::Body) -> impl Iterator<Item = ParticleSite> + 'a {
+    sites(&body.shape, &scene.lattice(body), body.particles).into_iter().flatten()
+}
+
+/// The particles that fill a body.
+#[derive(Default)]
+struct Filled {
+    /// How many.
+    count: usize,
+    /// Their volume [m^3], in the plane area [m^2].
+    volume: f64,
+    /// Its centre [m].
+    center: [f64; 3],
+    /// Those that are kept, by their numbers.
+    kept: Vec<(u32, ParticleSite)>,
+}
+
+impl Filled {
+    /// Those of a body that begin where some are wanted; none of a body without bounds. Where the volume of all is known,
+    /// they are taken one after the other.
+    fn of(
+        scene: &Scene,
+        body: &scene::Body,
+        (volume, wanted): (Option<f64>, impl Fn([f64; 3]) -> bool),
+    ) -> Option<Self> {
+        let Some(volume) = volume else {
+            let filling = fill(&body.shape, &scene.lattice(body), body.particles)?;
+            let (count, volume, center) = (filling.sites.len(), filling.volume(), filling.center());
+            let sites = (0..).zip(filling.sites);
+            let kept = sites.filter(|(_, site)| wanted(site.position)).collect();
+            return Some(Filled { count, volume, center, kept });
+        };
+        let mut filled = Filled { volume, ..Filled::default() };
+        for (site, number) in sites(&body.shape, &scene.lattice(body), body.particles)?.zip(0..) {
+            filled.count += 1;
+            filled.center =
+                std::array::from_fn(|k| filled.center[k] + site.position[k] * (site.volume / volume));
+            if wanted(site.position) {
+                filled.kept.push((number, site));
+            }
+        }
+        Some(filled)
+    }
+}
+
 /// Where the grid begins [m].
 fn origin(scene: &Scene) -> [f64; 3] {
     scene.domain.as_ref().map_or([0.0; 3], |domain| domain.min)
@@ -361,12 +458,12 @@ fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [
 
 fn particles<T: Real, const D: usize>(
     (own, stresses): (OwnColumns, &[InitialStress]),
-    (filling, kept): (&Filling, &[u32]),
+    kept: &[(u32, ParticleSite)],
     (velocity, turning, density): (impl Fn(usize, [f64; 3]) -> [f64; 3], [f64; 3], f64),
 ) -> Particles<T, D> {
     let particle = |place: usize| {
-        let number = kept[place] as usize;
-        let site: &ParticleSite = &filling.sites[number];
+        let (number, ref site) = kept[place];
+        let number = number as usize;
         Particle {
             position: Vector::of(site.position),
             velocity: Vector::of(velocity(number, site.position)),
@@ -386,7 +483,7 @@ fn particles<T: Real, const D: usize>(
         let first = particles.view().natural_columns().start;
         for k in 0..stress_entries(D) {
             let line = particles.line_mut(first + k).iter_mut();
-            let begun = kept.iter().map(|&number| &stresses[number as usize]);
+            let begun = kept.iter().map(|&(number, _)| &stresses[number as usize]);
             line.zip(begun).for_each(|(entry, begun)| *entry = T::of(begun.stretch.0[k]));
         }
     }

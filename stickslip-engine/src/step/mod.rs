@@ -53,8 +53,8 @@ mod walls;
 mod watch;
 mod writing;
 
-pub(crate) use build::build_among_from;
 pub use build::{build, build_among, build_on};
+pub(crate) use build::{build_among_from, build_among_saved};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
 pub use pass::ParticleLoop;
@@ -65,7 +65,7 @@ pub(crate) use walls::WallSums;
 use crate::basis::Basis;
 use crate::boundary::Boundary;
 use crate::contact::ContactUse;
-use crate::door::{RestoreError, SavedColumn, SavedState, Simulation, StepError, WriteError};
+use crate::door::{RestoreError, SavedColumn, SavedShare, SavedState, Simulation, StepError, WriteError};
 use crate::lanes::Laned;
 use crate::scene::{StartVelocities, StressUpdate};
 use crate::threads::each;
@@ -272,7 +272,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn save(&self) -> Option<SavedState> {
-        Some(self.saved())
+        self.is_whole().is_ok().then(|| self.saved())
+    }
+
+    fn save_rest(&self) -> Option<SavedState> {
+        Some(self.saved_rest())
+    }
+
+    fn save_shares(&self, most: usize, take: &mut dyn FnMut(Vec<SavedShare>)) {
+        self.share_out(most, take);
     }
 
     fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {

@@ -8,32 +8,66 @@ use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::column::{HALF_EDGES, INITIAL_STRETCH};
 use crate::door::{
-    RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedState, SavedUnbounded, WrittenValues,
+    RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedShare, SavedState, SavedUnbounded,
+    WrittenValues,
 };
+use crate::geometry::ParticleSite;
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, place_of};
-use crate::particles::{ColumnStart, Particles, number_of};
+use crate::particles::{ColumnStart, Particles, by_number, number_of};
 use crate::scene::{ContactLaw, StartVelocities, Transfer};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{SETTLES_EVERY, columns as columns_of};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Mutex;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
+        let mut saved = self.saved_rest();
+        for (saved, body) in saved.bodies.iter_mut().zip(&self.state.bodies) {
+            saved.numbers = body.particles.numbers().to_vec();
+            saved.columns = columns(&body.particles).collect();
+        }
+        saved
+    }
+
+    /// The particles of the state, body by body, at most so many at a time.
+    pub(super) fn share_out(&self, most: usize, take: &mut dyn FnMut(Vec<SavedShare>)) {
+        let (mut shares, mut room) = (Vec::new(), most);
+        for (body, Body { particles, .. }) in self.state.bodies.iter().enumerate() {
+            let mut first = 0;
+            while first < particles.len() {
+                let end = particles.len().min(first + room);
+                let columns = columns_of_some(particles, first..end).collect();
+                shares.push(SavedShare { body, numbers: particles.numbers()[first..end].to_vec(), columns });
+                (first, room) = (end, room - (end - first));
+                if room == 0 {
+                    take(std::mem::take(&mut shares));
+                    room = most;
+                }
+            }
+        }
+        if !shares.is_empty() {
+            take(shares);
+        }
+    }
+
+    /// The state without particles.
+    pub(super) fn saved_rest(&self) -> SavedState {
         let State { time, steps, phase, signal, damping, impacts, gravity_work, relaxation, .. } = self.state;
-        let bodies = self.state.bodies.iter().zip(&self.settings.filled);
+        let bodies = self.state.bodies.iter().zip(&self.settings.filled).zip(self.counts_of_all());
         SavedState {
             time,
             steps,
             phase,
             bodies: bodies
-                .map(|(body, filled)| SavedBody {
+                .map(|((body, filled), count)| SavedBody {
                     name: body.name.clone(),
-                    numbers: body.particles.numbers().to_vec(),
-                    columns: columns(&body.particles).collect(),
-                    missing: filled.saturating_sub(body.particles.len()),
+                    numbers: Vec::new(),
+                    columns: if count == 0 { columns(&body.particles).collect() } else { Vec::new() },
+                    missing: filled.saturating_sub(count),
                     motion: body.motion.as_ref().map(|motion| motion.state()),
                 })
                 .collect(),
@@ -78,7 +112,27 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// # Errors
     /// It is of another scene; then nothing is changed.
     pub(super) fn take_up(&mut self, saved: SavedState) -> Result<(), RestoreError> {
-        let state = &mut self.state;
+        self.check_rest(&saved)?;
+        let state = &self.state;
+        let without_bounds = |i: usize| state.unbounded.iter().any(|unbounded| unbounded.body == i);
+        let restored = (saved.bodies.iter().zip(&state.bodies).enumerate()).map(|(i, (saved, body))| {
+            let filled = self.settings.filled[i];
+            particles(saved, body, (!without_bounds(i)).then_some(filled))
+        });
+        let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
+        for (body, particles) in self.state.bodies.iter_mut().zip(restored) {
+            body.particles.become_others(particles);
+        }
+        self.take_up_rest(saved);
+        Ok(())
+    }
+
+    /// Looks whether a state is of the same scene, but for particles.
+    ///
+    /// # Errors
+    /// It is not.
+    pub(super) fn check_rest(&self, saved: &SavedState) -> Result<(), RestoreError> {
+        let state = &self.state;
         let [found, wanted] = [saved.bodies.len(), state.bodies.len()];
         if found != wanted {
             return Err(RestoreError(format!("it has {found} bodies, and the scene {wanted}")));
@@ -108,16 +162,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             if motions.is_some_and(|(motion, saved)| !motion.is_like(saved)) {
                 return Err(RestoreError(format!("body `{}` is free in one of the two only", body.name)));
             }
+            if saved.name != body.name {
+                let found = &saved.name;
+                return Err(RestoreError(format!("body `{}` stands where it has `{found}`", body.name)));
+            }
         }
-        let without_bounds = |i: usize| state.unbounded.iter().any(|unbounded| unbounded.body == i);
-        let restored = (saved.bodies.iter().zip(&state.bodies).enumerate()).map(|(i, (saved, body))| {
-            let filled = self.settings.filled[i];
-            particles(saved, body, (!without_bounds(i)).then_some(filled))
-        });
-        let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
+        Ok(())
+    }
 
-        for ((body, saved), particles) in state.bodies.iter_mut().zip(&saved.bodies).zip(restored) {
-            body.particles.become_others(particles);
+    /// Takes up a state of the same scene, but for particles.
+    pub(super) fn take_up_rest(&mut self, saved: SavedState) {
+        let (state, wanted) = (&mut self.state, saved.bodies.len());
+        for (body, saved) in state.bodies.iter_mut().zip(&saved.bodies) {
             if let (Some(motion), Some(saved)) = (&mut body.motion, &saved.motion) {
                 motion.restore(saved);
             }
@@ -150,7 +206,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         (state.signal, state.time) = (saved.signal, saved.time);
         (state.steps, state.phase) = (saved.steps, saved.phase % SETTLES_EVERY);
-        Ok(())
     }
 
     /// Lets bodies begin as those of the same name were in another run.
@@ -440,10 +495,18 @@ impl<const D: usize> Unbounded<D> {
 pub(super) fn columns<T: Real, const D: usize>(
     particles: &Particles<T, D>,
 ) -> impl Iterator<Item = SavedColumn> {
-    particles.described().map(|(first, column)| {
+    columns_of_some(particles, 0..particles.len())
+}
+
+/// The columns of particles at some places in memory.
+fn columns_of_some<T: Real, const D: usize>(
+    particles: &Particles<T, D>,
+    some: Range<usize>,
+) -> impl Iterator<Item = SavedColumn> {
+    particles.described().map(move |(first, column)| {
         let entries = first..first + column.kind.entries(D);
-        let mut bytes = Vec::with_capacity(entries.len() * particles.len() * size_of::<T>());
-        for line in entries.map(|entry| particles.line(entry)) {
+        let mut bytes = Vec::with_capacity(entries.len() * some.len() * size_of::<T>());
+        for line in entries.map(|entry| &particles.line(entry)[some.clone()]) {
             match size_of::<T>() {
                 4 => bytes.extend(line.iter().flat_map(|x| (x.f64() as f32).to_le_bytes())),
                 _ => bytes.extend(line.iter().flat_map(|x| x.f64().to_le_bytes())),
@@ -463,9 +526,6 @@ fn particles<T: Real, const D: usize>(
     let off = |what: String| RestoreError(format!("body `{}` {what}", body.name));
     let fresh = &body.particles;
     let count = saved.numbers.len();
-    if saved.name != body.name {
-        return Err(off(format!("stands where it has `{}`", saved.name)));
-    }
     if let Some(filled) = filled.filter(|&filled| count.checked_add(saved.missing) != Some(filled)) {
         return Err(off(format!("has {filled} particles in the scene, and {count} in it")));
     }
@@ -508,6 +568,51 @@ fn particles<T: Real, const D: usize>(
         return Err(off("began elsewhere than it does in the scene".into()));
     }
     Ok(particles)
+}
+
+/// Puts particles that were saved behind those of the body of this name.
+///
+/// # Errors
+/// They have other columns than these.
+pub(super) fn append<T: Real, const D: usize>(
+    name: &str,
+    particles: &mut Particles<T, D>,
+    saved: &SavedShare,
+) -> Result<(), RestoreError> {
+    let count = saved.numbers.len();
+    let same = saved.columns.len() == particles.described().count()
+        && (particles.described().zip(&saved.columns)).all(|((_, column), saved)| {
+            let bytes = column.kind.entries(D) * count * size_of::<T>();
+            (&saved.name[..], saved.width, saved.bytes.len()) == (column.name, size_of::<T>(), bytes)
+        });
+    if !same {
+        return Err(RestoreError(format!(
+            "body `{name}` has other columns of particles in it than in the scene"
+        )));
+    }
+    let mut bytes: Vec<u8> = saved.numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    bytes.reserve(particles.message_bytes(count));
+    saved.columns.iter().for_each(|column| bytes.extend_from_slice(&column.bytes));
+    particles.take_in(&bytes, count);
+    Ok(())
+}
+
+/// Whether each of some particles began where that of its number fills its body.
+pub(super) fn began_at<T: Real, const D: usize>(
+    particles: &Particles<T, D>,
+    sites: impl Iterator<Item = ParticleSite>,
+) -> bool {
+    let (numbers, order) = (particles.numbers(), by_number(particles.numbers()));
+    let mut rest = order.iter().map(|&place| place as usize).peekable();
+    let first = ColumnStart::<D>::START;
+    for (site, number) in sites.zip(0..) {
+        let Some(place) = rest.next_if(|&place| numbers[place] == number) else { continue };
+        if (0..D).any(|k| particles.line(first + k)[place] != T::of(site.position[k])) {
+            return false;
+        }
+    }
+    // One that is left has a number twice, or one that the body does not have.
+    rest.next().is_none()
 }
 
 /// Places that differ by this share of half a particle's width are one: a grid that begins elsewhere rounds otherwise.

@@ -65,6 +65,21 @@ impl<'a, T: Laned, const D: usize> SnapshotRows<'a, T, D> {
         SnapshotRows { bodies, places }
     }
 
+    /// From a body and a number up to another.
+    fn between(bodies: &'a [Body<T, D>], [from, to]: [(u32, u32); 2]) -> Self {
+        let mut places = Vec::new();
+        for (body, i) in bodies.iter().zip(0..).take(to.0 as usize + 1).skip(from.0 as usize) {
+            let numbers = body.particles.numbers();
+            let first = places.len();
+            let inside = |number: u32| from <= (i, number) && (i, number) < to;
+            places.extend(
+                numbers.iter().zip(0..).filter(|(number, _)| inside(**number)).map(|(_, place)| [i, place]),
+            );
+            places[first..].sort_unstable_by_key(|&[_, place]| numbers[place as usize]);
+        }
+        SnapshotRows { bodies, places }
+    }
+
     /// The components in space of a column, and zeros where a body has no such column.
     fn values<const N: usize>(&self, column: &ColumnDescription) -> Vec<[f64; N]> {
         let of_body = |body: &'a Body<T, D>| body.particles.column(column.name).map(|(_, lines)| lines);
@@ -102,6 +117,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn totals_of(&self, body: usize) -> Totals {
         let body = &self.state.bodies[body];
         self.among.as_ref().map_or_else(|| body.totals(), |among| among.totals(std::slice::from_ref(body))[0])
+    }
+
+    /// What a snapshot has of some particles.
+    fn snapshot_of(&self, rows: &SnapshotRows<T, D>) -> ParticleSnapshot {
+        let Ok(snapshot) = ParticleSnapshot::of_columns(D, rows);
+        ParticleSnapshot {
+            body: rows.places.par_iter().map(|&[body, _]| body).collect(),
+            number: (rows.places.iter())
+                .map(|&[body, place]| rows.bodies[body as usize].particles.numbers()[place as usize])
+                .collect(),
+            history: self.remembered(rows),
+            ..snapshot
+        }
     }
 
     /// What the laws of the bodies remember and their transfer has: what two laws call alike is one column.
@@ -306,16 +334,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
-        let rows = SnapshotRows::of(&self.state.bodies);
-        let Ok(snapshot) = ParticleSnapshot::of_columns(D, &rows);
-        ParticleSnapshot {
-            body: rows.places.par_iter().map(|&[body, _]| body).collect(),
-            number: (rows.places.iter())
-                .map(|&[body, place]| rows.bodies[body as usize].particles.numbers()[place as usize])
-                .collect(),
-            history: self.remembered(&rows),
-            ..snapshot
-        }
+        self.snapshot_of(&SnapshotRows::of(&self.state.bodies))
+    }
+
+    fn snapshot_between(&self, ends: [(u32, u32); 2]) -> ParticleSnapshot {
+        self.snapshot_of(&SnapshotRows::between(&self.state.bodies, ends))
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {

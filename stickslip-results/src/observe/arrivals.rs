@@ -6,6 +6,7 @@ use super::memory::Memory;
 use super::points::{Points, SamplePoint};
 use super::probes::points;
 use super::schedule::Schedule;
+use super::shared::{Asked, Question, answer};
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{ARRIVALS, Observer};
 use crate::door::View;
@@ -231,8 +232,16 @@ impl ArrivalWatches {
             let seen = match watch.source {
                 ArrivalSource::Point(point) => samples[point]
                     .map(|sample| (watch.value(&sample.velocity, &sample.stress), sample.position)),
-                ArrivalSource::Any(body) => furthest(view, body, watch),
-                ArrivalSource::Mean(body) => mean(view, body, watch),
+                ArrivalSource::Any(body) => {
+                    let side = watch.crossing.threshold.signum();
+                    let furthest = answer(view, &Furthest { body, quantity: watch.quantity, side });
+                    furthest.map(|(value, _, position)| (side * value, position))
+                }
+                ArrivalSource::Mean(body) => {
+                    let sums = answer(view, &MassMean { body, quantity: watch.quantity });
+                    let [mass, sum, moment @ ..] = sums.each_ref().map(ExactSum::value);
+                    (mass > 0.0).then(|| (sum / mass, moment.map(|x| x / mass)))
+                }
             };
             let late = std::mem::take(&mut watch.late);
             let Some((value, position)) = seen else { return true };
@@ -266,31 +275,68 @@ impl ArrivalWatch {
     }
 }
 
-/// The value furthest to the threshold's side in a body, and where it is.
-fn furthest(view: &dyn View, body: usize, watch: &ArrivalWatch) -> Option<(f64, [f64; 3])> {
-    let mut furthest: Option<(f64, u32, [f64; 3])> = None;
-    let side = watch.crossing.threshold.signum();
-    view.visit(body, &mut |particle| {
-        let (value, number) = (watch.value(&particle.velocity, &particle.stress), particle.number);
-        // Of equal ones the first by number: nobody knows in which order they are shown.
-        if furthest.is_none_or(|(most, of, _)| side * value > side * most || value == most && number < of) {
-            furthest = Some((value, number, particle.position));
-        }
-    });
-    furthest.map(|(value, _, position)| (value, position))
+/// The value furthest to a side in a body, and where it is.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Furthest {
+    body: usize,
+    quantity: Observable,
+    /// 1 or -1.
+    side: f64,
 }
 
-/// The mean of the values over the mass of a body, and its centre of mass.
-fn mean(view: &dyn View, body: usize, watch: &ArrivalWatch) -> Option<(f64, [f64; 3])> {
-    let (mut mass, mut sum, mut moment) =
-        (ExactSum::default(), ExactSum::default(), [0; 3].map(|_| ExactSum::default()));
-    view.visit(body, &mut |particle| {
-        mass.add(particle.mass);
-        sum.add(particle.mass * watch.value(&particle.velocity, &particle.stress));
-        moment.iter_mut().zip(particle.position).for_each(|(moment, x)| moment.add(particle.mass * x));
-    });
-    let mass = mass.value();
-    (mass > 0.0).then(|| (sum.value() / mass, moment.map(|x| x.value() / mass)))
+impl Question for Furthest {
+    /// How far it is to that side, and the particle's number and place; none of a body without particles.
+    type Answer = Option<(f64, u32, [f64; 3])>;
+
+    fn look(&self, view: &dyn View) -> Self::Answer {
+        let mut furthest = None;
+        view.visit(self.body, &mut |particle| {
+            let value = self.side * self.quantity.value(&particle.velocity, &particle.stress);
+            furthest = Self::join(furthest, Some((value, particle.number, particle.position)));
+        });
+        furthest
+    }
+
+    fn join(one: Self::Answer, other: Self::Answer) -> Self::Answer {
+        let (Some((value, number, _)), Some((most, of, _))) = (other, one) else { return one.or(other) };
+        // Of equal ones the first by number: nobody knows in which order they are shown.
+        if value > most || value == most && number < of { other } else { one }
+    }
+
+    fn asked(&self) -> Asked {
+        Asked::Furthest(*self)
+    }
+}
+/// The mean of values over the mass of a body, and its centre of mass.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(super) struct MassMean {
+    body: usize,
+    quantity: Observable,
+}
+
+impl Question for MassMean {
+    /// Sums of m, m q and m x.
+    type Answer = [ExactSum; 5];
+
+    fn look(&self, view: &dyn View) -> Self::Answer {
+        let mut sums = [0; 5].map(|_| ExactSum::default());
+        view.visit(self.body, &mut |particle| {
+            let value = self.quantity.value(&particle.velocity, &particle.stress);
+            let [x, y, z] = particle.position;
+            let of_mass = [1.0, value, x, y, z];
+            sums.iter_mut().zip(of_mass).for_each(|(sum, x)| sum.add(particle.mass * x));
+        });
+        sums
+    }
+
+    fn join(mut one: Self::Answer, other: Self::Answer) -> Self::Answer {
+        one.iter_mut().zip(&other).for_each(|(sum, other)| sum.merge(other));
+        one
+    }
+
+    fn asked(&self) -> Asked {
+        Asked::Mean(*self)
+    }
 }
 
 #[cfg(test)]

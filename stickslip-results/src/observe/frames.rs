@@ -2,8 +2,8 @@
 //! table.
 
 use super::file::{
-    FileSum, OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, replace_summed,
-    secure,
+    FileSum, OutputError, ReadError, ReadProblem, is_there, part_of, read_bytes, remove_from, replace,
+    replace_summed, secure,
 };
 use super::folder::OutputFolder;
 use super::memory::Memory;
@@ -114,6 +114,27 @@ impl Frames {
             let file = encode(series.files.format);
             series.push(time, &file)
         });
+    }
+
+    /// Adds a snapshot at a time [s] that `write` puts under a name of its own, before it gets the name that it has in the
+    /// series; a second one at the time of the last takes its place.
+    ///
+    /// # Errors
+    /// The disk is full or refuses, now or at an earlier snapshot; then the series is as it was.
+    pub(super) fn put(
+        &mut self,
+        time: f64,
+        write: impl FnOnce(&Path) -> io::Result<FileSum>,
+    ) -> Result<(), OutputError> {
+        let path = self.writer.ask(move |series| Ok(series.next_path(time)))?;
+        let part = part_of(&path);
+        let written = write(&part).and_then(|sum| fs::rename(&part, &path).map(|()| sum));
+        let sum = written.map_err(|source| {
+            // As of any file that is replaced.
+            let _ = fs::remove_file(&part);
+            OutputError { path, source }
+        })?;
+        self.writer.ask(move |series| series.list(time, sum))
     }
 
     /// Keeps which snapshots there are, or takes away those that were made later.
@@ -259,14 +280,26 @@ struct Series {
 impl Series {
     /// Adds a snapshot; after an error the series is as it was.
     fn push(&mut self, time: f64, snapshot: &FrameFile) -> Result<(), OutputError> {
+        let sum = snapshot.put(&self.next_path(time))?;
+        self.list(time, sum)
+    }
+
+    /// Where the next snapshot lies: at the time of the last, in its place.
+    fn next_path(&self, time: f64) -> PathBuf {
+        let again = usize::from(self.times.last() == Some(&time));
+        self.files.path(self.times.len() - again)
+    }
+
+    /// Puts a snapshot that is there on the list; after an error the series is as it was.
+    fn list(&mut self, time: f64, sum: FileSum) -> Result<(), OutputError> {
         if self.times.last() == Some(&time) {
             let last = self.times.len() - 1;
             self.secured = self.secured.min(last);
-            self.sums[last] = Some(snapshot.put(&self.files.path(last))?);
+            self.sums[last] = Some(sum);
             return Ok(());
         }
-        let path = self.files.path(self.times.len());
-        self.sums.push(Some(snapshot.put(&path)?));
+        let path = self.next_path(time);
+        self.sums.push(Some(sum));
         self.times.push(time);
         self.write_list().inspect_err(|_| {
             // A snapshot that no list names only takes the room that the record of the failed run needs.

@@ -4,10 +4,12 @@ use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::schedule::Schedule;
+use super::shared::{Asked, Question, answer};
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{FRONT_SPEEDS, FRONTS, Observer};
 use crate::door::{ParticleView, View};
 use crate::scene::{Front, Scene};
+use serde::{Deserialize, Serialize};
 
 /// A front at one time, in SI units; the columns of `fronts.csv`. A front that is nowhere has no row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -137,17 +139,8 @@ impl Observer for FrontsObserver {
 impl Track {
     /// Where the front is now, if anywhere.
     fn follow(&mut self, view: &dyn View) -> Option<FrontRow> {
-        let mut first: Option<(f64, u32, [f64; 3])> = None;
-        for &body in &self.bodies {
-            view.visit(body, &mut |particle| {
-                let Some(way) = way(&self.front, particle) else { return };
-                // Of equal ones the first by number: nobody knows in which order they are shown.
-                if first.is_none_or(|(most, of, _)| way > most || way == most && particle.number < of) {
-                    first = Some((way, particle.number, particle.position));
-                }
-            });
-        }
-        let (distance, _, position) = first?;
+        let question = FrontQuestion { front: self.front.clone(), bodies: self.bodies.clone() };
+        let (distance, _, position) = answer(view, &question)?;
         let time = view.time();
         let before = self.furthest.last().map_or(f64::NEG_INFINITY, |[_, distance]| *distance);
         self.furthest.push([time, distance.max(before)]);
@@ -177,6 +170,40 @@ fn way(front: &Front, particle: &ParticleView) -> Option<f64> {
     let along: f64 = (0..3).map(|k| from[k] * front.direction[k]).sum();
     let across = (0..3).map(|k| (from[k] - along * front.direction[k]).powi(2)).sum::<f64>().sqrt();
     front.within.is_none_or(|within| across <= within).then_some(along)
+}
+
+/// Where a front is furthest in some bodies.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct FrontQuestion {
+    front: Front,
+    bodies: Vec<usize>,
+}
+
+impl Question for FrontQuestion {
+    /// How far it is, the body and the number of the particle, and its place.
+    type Answer = Option<(f64, (u32, usize), [f64; 3])>;
+
+    fn look(&self, view: &dyn View) -> Self::Answer {
+        let mut furthest = None;
+        for &body in &self.bodies {
+            view.visit(body, &mut |particle| {
+                let here =
+                    way(&self.front, particle).map(|way| (way, (particle.number, body), particle.position));
+                furthest = Self::join(furthest, here);
+            });
+        }
+        furthest
+    }
+
+    fn join(one: Self::Answer, other: Self::Answer) -> Self::Answer {
+        let (Some((way, which, _)), Some((most, of, _))) = (other, one) else { return one.or(other) };
+        // Of equal ones the first by number: nobody knows in which order they are shown.
+        if way > most || way == most && which < of { other } else { one }
+    }
+
+    fn asked(&self) -> Asked {
+        Asked::Front(self.clone())
+    }
 }
 
 /// Slope of the straight line that is closest to points in the sense of least squares, and its standard error; `None`

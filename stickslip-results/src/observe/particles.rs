@@ -6,11 +6,14 @@ use super::frames::Frames;
 use super::memory::Memory;
 use super::particle_file::ParticleFile;
 use super::schedule::Schedule;
+use super::shared::{ParticlesRequest, write_particles};
 use super::vtk::{PointArrays, VtkFile};
 use super::{Observer, PARTICLES};
 use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files};
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
 use crate::scene::{Scene, SeriesFormat, SnapshotContent};
+use std::collections::BTreeMap;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -45,15 +48,22 @@ impl Observer for ParticlesObserver {
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        self.frames.make_room()?;
-        let every = self.content.every as u32;
-        let snapshot = view.snapshot();
-        let all = every == 1 && self.bodies.iter().all(|wanted| *wanted);
-        let snapshot = match all {
-            true => snapshot,
-            false => snapshot.only(|body, number| self.bodies[body as usize] && number % every == 0),
-        };
         let content = self.content.clone();
+        if view.shares().len() > 1 {
+            self.frames.put(time, |path| {
+                let request = ParticlesRequest {
+                    path: path.to_path_buf(),
+                    time,
+                    content: SnapshotContent::clone(&content),
+                    bodies: self.bodies.clone(),
+                };
+                write_particles(view, request).unwrap_or_else(|| Err(io::ErrorKind::Unsupported.into()))
+            })?;
+            self.schedule.recorded(time);
+            return Ok(());
+        }
+        self.frames.make_room()?;
+        let snapshot = chosen(view.snapshot(), &self.bodies, content.every);
         self.frames.push(time, snapshot.bytes(), move |_| encode_particles(&snapshot, time, &content).into());
         self.schedule.recorded(time);
         Ok(())
@@ -73,12 +83,87 @@ impl Observer for ParticlesObserver {
     }
 }
 
-/// A snapshot at a time [s] as a file for ParaView, ready to be written.
+/// The particles of a snapshot that a file holds: of each body all or none, whose numbers are multiples of `every`.
+pub(super) fn chosen(snapshot: ParticleSnapshot, bodies: &[bool], every: usize) -> ParticleSnapshot {
+    if every == 1 && bodies.iter().all(|wanted| *wanted) {
+        return snapshot;
+    }
+    snapshot.only(|body, number| bodies[body as usize] && (number as usize).is_multiple_of(every))
+}
+
+/// A body, and which of so many of its numbers.
+type Stretch = (u32, u32);
+/// Numbers of a body that stay together.
+const STRETCH: u32 = 1 << 14;
+/// Particles of a piece, where a stretch does not have more.
+const OF_A_PIECE: usize = 1 << 16;
+
+/// How many of some particles, of these bodies and numbers, there are in each stretch.
+pub(super) fn count_by_stretch(particles: impl Iterator<Item = (u32, u32)>) -> BTreeMap<Stretch, usize> {
+    let mut counts = BTreeMap::new();
+    particles.for_each(|(body, number)| *counts.entry((body, number / STRETCH)).or_default() += 1);
+    counts
+}
+
+/// The bodies and numbers of the particles of a snapshot.
+fn identity(snapshot: &ParticleSnapshot) -> impl Iterator<Item = (u32, u32)> + '_ {
+    snapshot.body.iter().copied().zip(snapshot.number.iter().copied())
+}
+
+/// Where a piece begins, among the particles in the order of bodies and numbers, and how many it has.
+pub(super) struct PieceStart {
+    first: Stretch,
+    pub points: usize,
+}
+
+impl PieceStart {
+    /// The body and the number from which on particles are in it.
+    pub(super) fn begin(&self) -> (u32, u32) {
+        let (body, stretch) = self.first;
+        (body, stretch * STRETCH)
+    }
+}
+
+/// Pieces of a file with so many particles in each stretch: one at least.
+pub(super) fn cut(counts: &BTreeMap<Stretch, usize>) -> Vec<PieceStart> {
+    let mut pieces: Vec<PieceStart> = Vec::new();
+    for (&first, &count) in counts {
+        match pieces.last_mut().filter(|piece| piece.points + count <= OF_A_PIECE) {
+            Some(piece) => piece.points += count,
+            None => pieces.push(PieceStart { first, points: count }),
+        }
+    }
+    if pieces.is_empty() {
+        pieces.push(PieceStart { first: (0, 0), points: 0 });
+    }
+    pieces
+}
+
+/// A snapshot at a time [s] as a file for ParaView, ready to be written: in pieces of some hundred thousand particles.
 ///
 /// It holds the columns of the snapshot, and behind each those of [`DERIVED`] that follow from it; first vectors and
 /// tensors, then whose each particle is, then numbers, then history. What a reader cannot know, the units of history,
 /// the file says. Of the `content` all but bodies and `every` count here.
 pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> VtkFile {
+    let pieces = cut(&count_by_stretch(identity(snapshot)));
+    if pieces.len() == 1 {
+        return encode_piece(snapshot, time, content);
+    }
+    let mut end = 0;
+    let files = pieces.iter().map(|piece| {
+        let begin = end;
+        end += piece.points;
+        encode_piece(&snapshot.rows(begin..end), time, content)
+    });
+    let joined = files.reduce(|mut file, piece| {
+        file.append(piece);
+        file
+    });
+    joined.expect("there is a piece")
+}
+
+/// The same as one piece.
+pub(super) fn encode_piece(snapshot: &ParticleSnapshot, time: f64, content: &SnapshotContent) -> VtkFile {
     let mut file = VtkFile::new(time, &snapshot.position, content);
     file.field("dimension", snapshot.dimension as f64);
     let wanted =
@@ -253,6 +338,36 @@ mod tests {
             std::fs::write(&path, &bytes[..bytes.len() - 60]).unwrap();
             assert!(particles == 0 || PointArrays::open(&path).unwrap().check().is_err(), "{particles}");
         }
+    }
+
+    /// Of three bodies, the second with as many particles as a piece takes: pieces end where stretches of numbers do, and
+    /// hold the same particles as one would.
+    #[test]
+    fn a_file_of_many_particles_has_pieces() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("00000.vtu");
+        let counts = [100, OF_A_PIECE + 5, 7];
+        let whole = snapshot(counts.iter().sum::<usize>() | 1);
+        let numbered =
+            || counts.iter().zip(0..).flat_map(|(&count, body)| (0..count as u32).map(move |i| (body, i)));
+        let body = numbered().map(|(body, _)| body).collect();
+        let number = numbered().map(|(_, number)| number).collect();
+        let written = ParticleSnapshot { body, number, ..whole.rows(0..counts.iter().sum()) };
+        let pieces: Vec<usize> =
+            cut(&count_by_stretch(identity(&written))).iter().map(|piece| piece.points).collect();
+        let last = STRETCH as usize;
+        assert_eq!(pieces, [100 + OF_A_PIECE - last, last + 5 + 7]);
+        for compression in [Compression::Zlib, Compression::None] {
+            let content = SnapshotContent { compression, ..double() };
+            encode_particles(&written, 0.25, &content).write(&path).unwrap();
+            let text = fs::read(&path).unwrap();
+            let header = String::from_utf8_lossy(&text[..10_000]).into_owned();
+            assert_eq!(header.matches("<Piece ").count(), 2, "{header}");
+            assert!(read_particles(&path).unwrap() == written, "{compression:?}");
+            PointArrays::open(&path).unwrap().check().unwrap();
+        }
+        let nothing = ParticleSnapshot::default();
+        assert_eq!(cut(&count_by_stretch(identity(&nothing))).len(), 1);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::memory::Memory;
+use super::shared::{Asked, Question, answer};
 use crate::door::{ParticleView, View};
 use crate::exact::ExactSum;
 use crate::scene::{Anchor, Domain, Scene};
@@ -39,7 +40,7 @@ pub(super) struct SamplePoint {
 /// particles; it smears a sharp front over about a cell, and within a cell of a surface it leans to the inside. A point
 /// of space takes the particles that are there now; a point of the material takes those of the first sample,
 /// with their weights, for ever.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Points {
     points: Vec<(SamplePoint, TakenParticles)>,
     /// Indices of the bodies that are not rigid.
@@ -85,26 +86,7 @@ impl Points {
     /// The material at each point now; `None` where no particle is around.
     /// The first call binds the points of the material.
     pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<PointSample>> {
-        let mut sums = vec![WeightedSum::default(); self.points.len()];
-        let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];
-        for &body in &self.bodies {
-            let mut here: Vec<usize> = Vec::new();
-            here.extend((0..self.points.len()).filter(|&i| self.points[i].0.body.is_none_or(|b| b == body)));
-            if here.is_empty() {
-                continue;
-            }
-            view.visit(body, &mut |particle| {
-                for &i in &here {
-                    let weight = self.weight(i, particle);
-                    if weight > 0.0 {
-                        sums[i].add(weight, particle);
-                        if self.binds(i) {
-                            found[i].push((particle.number, weight));
-                        }
-                    }
-                }
-            });
-        }
+        let (sums, found) = answer(view, self);
         let samples: Vec<_> = sums.iter().map(WeightedSum::mean).collect();
         for (i, mut weights) in found.into_iter().enumerate() {
             let Some(mean) = samples[i].filter(|_| self.binds(i)) else { continue };
@@ -126,6 +108,31 @@ impl Points {
             Some(sample)
         };
         samples.into_iter().zip(&self.points).map(place).collect()
+    }
+
+    /// Sums over particles at each point, and of points of the material that have none yet their numbers and weights.
+    fn sums(&self, view: &dyn View) -> PointSums {
+        let mut sums = vec![WeightedSum::default(); self.points.len()];
+        let mut found: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.points.len()];
+        for &body in &self.bodies {
+            let mut here: Vec<usize> = Vec::new();
+            here.extend((0..self.points.len()).filter(|&i| self.points[i].0.body.is_none_or(|b| b == body)));
+            if here.is_empty() {
+                continue;
+            }
+            view.visit(body, &mut |particle| {
+                for &i in &here {
+                    let weight = self.weight(i, particle);
+                    if weight > 0.0 {
+                        sums[i].add(weight, particle);
+                        if self.binds(i) {
+                            found[i].push((particle.number, weight));
+                        }
+                    }
+                }
+            });
+        }
+        (sums, found)
     }
 
     /// How many.
@@ -185,6 +192,41 @@ impl Points {
     }
 }
 
+/// See [`Points::sums`].
+type PointSums = (Vec<WeightedSum>, Vec<Vec<(u32, f64)>>);
+
+/// Points as ranks are asked about them.
+#[derive(Serialize, Deserialize)]
+pub(super) struct PointsQuestion {
+    points: Points,
+    domain: Option<Domain>,
+}
+
+impl Question for Points {
+    type Answer = PointSums;
+
+    fn look(&self, view: &dyn View) -> PointSums {
+        self.sums(view)
+    }
+
+    fn join((mut sums, mut found): PointSums, (others, more): PointSums) -> PointSums {
+        sums.iter_mut().zip(&others).for_each(|(sum, other)| sum.merge(other));
+        found.iter_mut().zip(more).for_each(|(found, more)| found.extend(more));
+        (sums, found)
+    }
+
+    fn asked(&self) -> Asked {
+        Asked::Points(PointsQuestion { points: self.clone(), domain: self.domain.clone() })
+    }
+}
+
+impl PointsQuestion {
+    /// The points that it is about.
+    pub(super) fn points(&self) -> Points {
+        Points { domain: self.domain.clone(), ..self.points.clone() }
+    }
+}
+
 fn wendland(a: &[f64; 3], b: &[f64; 3], radius: f64) -> f64 {
     let squared = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2);
     if squared >= radius * radius {
@@ -195,7 +237,7 @@ fn wendland(a: &[f64; 3], b: &[f64; 3], radius: f64) -> f64 {
 }
 
 /// Weighted sums over particles.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct WeightedSum {
     weight: ExactSum,
     position: [ExactSum; 3],
@@ -210,6 +252,14 @@ impl WeightedSum {
         let vectors = self.position.iter_mut().zip(particle.position);
         let vectors = vectors.chain(self.velocity.iter_mut().zip(particle.velocity));
         vectors.chain(self.stress.iter_mut().zip(particle.stress)).for_each(|(sum, x)| sum.add(weight * x));
+    }
+
+    /// Adds the sums over others.
+    fn merge(&mut self, other: &WeightedSum) {
+        self.weight.merge(&other.weight);
+        let vectors = self.position.iter_mut().zip(&other.position);
+        let vectors = vectors.chain(self.velocity.iter_mut().zip(&other.velocity));
+        vectors.chain(self.stress.iter_mut().zip(&other.stress)).for_each(|(sum, other)| sum.merge(other));
     }
 
     /// The mean; `None` of nothing.

@@ -37,7 +37,7 @@ pub fn verify(folder: &Path) -> Result<Verified, ReadError> {
     verified.note(Manifest::verify(folder));
     let mut newest = None;
     for path in Checkpoint::list(folder)? {
-        let read = Checkpoint::read(&path);
+        let read = Checkpoint::open(&path);
         verified.note(read.map(|mut checkpoint| {
             newest.get_or_insert_with(|| checkpoint.memory(&path));
         }));

@@ -189,7 +189,7 @@ impl Dimension {
 }
 
 /// Number format of the particles and the grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
     /// `f32`.
@@ -200,7 +200,7 @@ pub enum Precision {
 }
 
 /// How the arrays of files for ParaView are packed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Compression {
     /// In blocks, by zlib.
@@ -573,7 +573,7 @@ pub struct Outputs {
 }
 
 /// What snapshots of particles and grid hold.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SnapshotContent {
     /// Number format of what files hold, whatever the run computes with.
     pub precision: Precision,

@@ -181,18 +181,32 @@ impl Checkpoints {
         self.finish()?;
         self.made(simulation.time());
         let path = self.path(simulation);
-        let Some(state) = simulation.save() else { return Ok(()) };
-        let checkpoint = Checkpoint::new(&self.scene, state, memory);
         let (folder, keep) = (self.folder.clone(), self.options.keep.max(1));
         let (trouble, first) = (Arc::clone(&self.trouble), !std::mem::replace(&mut self.prepared, true));
-        self.writer.hand_over(0, move |()| {
-            let prepared = if first { Checkpoint::prepare(&folder) } else { Ok(()) };
-            let done = prepared
-                .and_then(|()| checkpoint.write(&path, form))
-                .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
+        let prepare = move |folder: &OutputFolder| if first { Checkpoint::prepare(folder) } else { Ok(()) };
+        let note = move |done: Result<(), OutputError>| {
             if let Err(error) = done {
                 *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             }
+        };
+        if simulation.shares().len() > 1 {
+            // Ranks write together, and go on once they have.
+            let Some(rest) = simulation.save_rest() else { return Ok(()) };
+            let checkpoint = Checkpoint::new(&self.scene, rest, memory);
+            let done = prepare(&folder)
+                .and_then(|()| checkpoint.write_shared((&path, form), simulation))
+                .and_then(|_| Checkpoint::keep_newest(folder.path(), keep));
+            note(done);
+            return Ok(());
+        }
+        let Some(state) = simulation.save() else { return Ok(()) };
+        let checkpoint = Checkpoint::new(&self.scene, state, memory);
+        self.writer.hand_over(0, move |()| {
+            note(
+                prepare(&folder)
+                    .and_then(|()| checkpoint.write(&path, form))
+                    .and_then(|()| Checkpoint::keep_newest(folder.path(), keep)),
+            );
             Ok(())
         });
         Ok(())

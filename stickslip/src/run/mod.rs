@@ -168,7 +168,7 @@ pub fn resume(
         let program = &checkpoint.program;
         notes.push(format!("version {program} began the run, and version {version} goes on with it"));
     }
-    let restored = simulation.restore(checkpoint.state);
+    let restored = checkpoint.restore(&path, simulation).map_err(ResumeError::from)?;
     restored.map_err(|problem| ResumeError::Other { path: path.clone(), problem })?;
     let before = before.ok();
     let ended = before.as_ref().filter(|before| before.status == Status::Finished);

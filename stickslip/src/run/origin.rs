@@ -51,11 +51,11 @@ impl Origin {
             let frame = frame_at(&results, &start.from, at)?;
             return Self::of_frame(scene, (&start.from, &results, frame), view);
         }
-        let (checkpoint, from, damaged) = match start.from.is_file() {
-            true => (Checkpoint::read(&start.from)?, start.from.clone(), Vec::new()),
+        let (mut checkpoint, from, damaged) = match start.from.is_file() {
+            true => (Checkpoint::open(&start.from)?, start.from.clone(), Vec::new()),
             false => Checkpoint::newest(&start.from)?,
         };
-        let mut checkpoint = checkpoint;
+        checkpoint.fill(&from)?;
         let memory = Some(checkpoint.memory(&from));
         let damaged = damaged.into_iter().map(|error| error.path).collect();
         Ok(Origin { state: checkpoint.state, from, is_snapshot: false, memory, damaged })

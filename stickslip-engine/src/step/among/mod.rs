@@ -1,6 +1,9 @@
 //! A step of one of several ranks: what it sends to others, and takes from them.
 
 mod loads;
+mod taking_up;
+
+pub(crate) use taking_up::Find;
 
 use super::Engine;
 use super::pass::{FaultReport, home};
@@ -19,7 +22,7 @@ use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, number_of, write_number};
 use crate::ranks::{
-    Message, Partition, Ranks, SentAndWaited, add_up, bytes_of, gathered, largest, message_to, read,
+    Message, Partition, Ranks, SentAndWaited, add_up, bytes_of, combined, gathered, largest, message_to, read,
 };
 use crate::scene::{
     self, BasisKind, BodyMotion, ContactLaw, ContactRule, Face, Load, NamedMaterial, OutsideValue, Problem,
@@ -370,13 +373,27 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.among.as_ref().map_or(here, |among| largest(&*among.ranks, f64::from(u8::from(here))) > 0.0)
     }
 
+    /// How many particles each body has on all ranks.
+    pub(super) fn counts_of_all(&self) -> Vec<usize> {
+        let own: Vec<usize> = self.state.bodies.iter().map(|body| body.particles.len()).collect();
+        let Some(among) = &self.among else { return own };
+        combined(&*among.ranks, &own, |mut all: Vec<usize>, others| {
+            all.iter_mut().zip(others).for_each(|(count, other)| *count += other);
+            all
+        })
+    }
+
     /// Which particles of a body are not in this rank's share, by their places in memory.
     pub(super) fn of_other_ranks(&self, particles: &Particles<T, D>) -> Vec<u32> {
         let Some(among) = &self.among else { return Vec::new() };
-        let abroad = |&particle: &u32| {
-            among.partition.owner(self.block_of(particles, particle as usize)) != among.ranks.rank()
-        };
+        let abroad = |&particle: &u32| self.owner_of(particles, particle as usize) != among.ranks.rank();
         (0..particles.len() as u32).filter(abroad).collect()
+    }
+
+    /// The rank that owns the block of a particle.
+    fn owner_of(&self, particles: &Particles<T, D>, particle: usize) -> usize {
+        let owner = |among: &Among<T>| among.partition.owner(self.block_of(particles, particle));
+        self.among.as_ref().map_or(0, owner)
     }
 
     /// The home block of a particle, in the first period.
@@ -453,14 +470,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let particles = &mut self.state.bodies[body].particles;
             let mut by_rank: Vec<(usize, u32)> = of_body.iter().map(|one| (one.rank, one.particle)).collect();
             by_rank.sort_unstable();
-            for some in by_rank.chunk_by(|a, b| a.0 == b.0) {
-                let to = some[0].0;
-                let message = message_to(&mut messages, to);
-                message.extend((body as u32).to_le_bytes());
-                message.extend((some.len() as u32).to_le_bytes());
-                let some: Vec<u32> = some.iter().map(|&(_, particle)| particle).collect();
-                particles.write_particles(&some, message);
-            }
+            write_particles((body, particles), &by_rank, &mut messages);
             let places: Vec<u32> = of_body.iter().map(|one| one.particle).collect();
             let moves = particles.take_out(&places);
             self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(moves.len()));
@@ -468,20 +478,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             self.workspace.active.renumber(body, &moves, base);
         }
         for (_, message) in among.ranks.exchange(messages) {
-            let mut rest = &message[..];
-            while let Some((body, after)) = split_number(rest)
-                && let Some((count, after)) = split_number(after)
-            {
-                let particles = &mut self.state.bodies[body].particles;
-                let (bytes, after) = after.split_at(particles.message_bytes(count));
-                let first = particles.len();
-                particles.take_in(bytes, count);
-                self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(count));
+            let Self { state, workspace, .. } = self;
+            read_particles(&message, &mut state.bodies, &mut |body, first, particles| {
+                let count = particles.len() - first;
+                workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(count));
                 let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
                 let number = |particle: usize| particles.numbers()[particle];
-                self.workspace.active.arrive((body, first..particles.len()), (base, number));
-                rest = after;
-            }
+                workspace.active.arrive((body, first..particles.len()), (base, number));
+            });
         }
         self.among = Some(among);
         let bodies = &self.state.bodies;
@@ -569,6 +573,41 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             particles.receive_guests(bytes, counts.iter().sum());
             self.workspace.active.invite((body, home), first, counts.into_iter());
         }
+    }
+}
+
+/// Writes particles of a body, by their places and ordered by the ranks to which they go, behind the messages to these.
+fn write_particles<T: Real, const D: usize>(
+    (body, particles): (usize, &Particles<T, D>),
+    by_rank: &[(usize, u32)],
+    messages: &mut Vec<Message>,
+) {
+    for some in by_rank.chunk_by(|a, b| a.0 == b.0) {
+        let message = message_to(messages, some[0].0);
+        message.extend((body as u32).to_le_bytes());
+        message.extend((some.len() as u32).to_le_bytes());
+        let some: Vec<u32> = some.iter().map(|&(_, particle)| particle).collect();
+        particles.write_particles(&some, message);
+    }
+}
+
+/// Takes in the particles of a message; `arrived` gets the body, the place of the first of them, and all that the body
+/// has.
+fn read_particles<T: Real, const D: usize>(
+    message: &[u8],
+    bodies: &mut [Body<T, D>],
+    arrived: &mut dyn FnMut(usize, usize, &Particles<T, D>),
+) {
+    let mut rest = message;
+    while let Some((body, after)) = split_number(rest)
+        && let Some((count, after)) = split_number(after)
+    {
+        let particles = &mut bodies[body].particles;
+        let (bytes, after) = after.split_at(particles.message_bytes(count));
+        let first = particles.len();
+        particles.take_in(bytes, count);
+        arrived(body, first, particles);
+        rest = after;
     }
 }
 

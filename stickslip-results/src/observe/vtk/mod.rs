@@ -7,7 +7,8 @@
 //! u64 blocks, u64 bytes of a full block, u64 bytes of a partial last block (0: none),
 //! u64 compressed bytes of each block, the blocks
 //! ```
-//! Without compression it is a u64 of all bytes, and these. Blocks are independent. Numbers have the format that the
+//! Without compression it is a u64 of all bytes, and these. A file of many points has several pieces, the arrays of one
+//! behind those of the other. Blocks are independent. Numbers have the format that the
 //! file is made with; in double precision they keep all their bits, and reading gives exactly what was written.
 
 mod read;
@@ -15,7 +16,7 @@ mod write;
 
 pub(super) use read::PointArrays;
 pub use write::VtkFile;
-pub(super) use write::{NUMBER, VECTOR};
+pub(super) use write::{END, NUMBER, PieceSize, VECTOR};
 
 /// The name that ParaView has for a field with the time.
 pub(super) const TIME: &str = "TimeValue";

@@ -20,7 +20,8 @@ pub(in crate::observe) struct PointArrays {
     appended: usize,
     /// Whether it is packed.
     compressed: bool,
-    count: usize,
+    /// Points of each piece.
+    counts: Vec<usize>,
     fields: BTreeMap<String, f64>,
     /// Where the points are.
     positions: Option<ArrayPlace>,
@@ -34,8 +35,20 @@ pub(in crate::observe) struct PointArrays {
 struct ArrayPlace {
     kind: String,
     components: usize,
-    offset: usize,
+    /// Of each piece.
+    offsets: Vec<usize>,
     unit: String,
+}
+
+impl ArrayPlace {
+    /// Takes the place in the next piece.
+    fn go_on(&mut self, next: ArrayPlace) -> Result<(), ReadProblem> {
+        if (&self.kind, self.components) != (&next.kind, next.components) {
+            return Err(missing("array of one kind in all pieces"));
+        }
+        self.offsets.extend(next.offsets);
+        Ok(())
+    }
 }
 
 impl PointArrays {
@@ -47,7 +60,7 @@ impl PointArrays {
             bytes: Vec::new(),
             appended: 0,
             compressed: false,
-            count: 0,
+            counts: Vec::new(),
             fields: BTreeMap::new(),
             positions: None,
             arrays: BTreeMap::new(),
@@ -78,7 +91,7 @@ impl PointArrays {
                     expect(&tag, "header_type", "UInt64")?;
                 }
                 Event::Start(tag) if tag.name().0 == "Piece" => {
-                    self.count = attribute(&tag, "NumberOfPoints")?;
+                    self.counts.push(attribute(&tag, "NumberOfPoints")?);
                 }
                 Event::Start(tag) if tag.name().0 == "DataArray" => {
                     field = Some(attribute(&tag, "Name")?);
@@ -93,13 +106,15 @@ impl PointArrays {
                     let place = ArrayPlace {
                         kind: attribute(&tag, "type")?,
                         components: attribute(&tag, "NumberOfComponents")?,
-                        offset: attribute(&tag, "offset")?,
+                        offsets: vec![attribute(&tag, "offset")?],
                         unit: attribute(&tag, "Unit").unwrap_or_default(),
                     };
                     let name: String = attribute(&tag, "Name")?;
-                    match &section[..] {
-                        "Points" => self.positions = Some(place),
-                        "PointData" => {
+                    match (&section[..], &mut self.positions, self.arrays.get_mut(&name)) {
+                        ("Points", Some(positions), _) => positions.go_on(place)?,
+                        ("Points", positions, _) => *positions = Some(place),
+                        ("PointData", _, Some(array)) => array.go_on(place)?,
+                        ("PointData", _, None) => {
                             self.names.push(name.clone());
                             self.arrays.insert(name, place);
                         }
@@ -126,7 +141,7 @@ impl PointArrays {
 
     /// How many points there are.
     pub(in crate::observe) fn count(&self) -> usize {
-        self.count
+        self.counts.iter().fold(0, |sum, count| sum.saturating_add(*count))
     }
 
     /// Unit of an array and what each point has in it; `None` if there is no such array of real numbers.
@@ -205,16 +220,24 @@ impl PointArrays {
         read: impl Fn(&[u8]) -> R + Sync,
     ) -> Result<Vec<R>, ReadProblem> {
         let cut = || missing(&format!("complete array `{name}`"));
-        let start = self.appended.checked_add(place.offset).ok_or_else(cut)?;
-        let bytes = self.bytes.get(start..).ok_or_else(cut)?;
-        let total = self.count.checked_mul(each).ok_or_else(cut)?;
-        if !self.compressed {
+        if place.offsets.len() != self.counts.len() {
+            return Err(cut());
+        }
+        let mut read_all = Vec::new();
+        let mut packed = Vec::new();
+        for (offset, count) in place.offsets.iter().zip(&self.counts) {
+            let start = self.appended.checked_add(*offset).ok_or_else(cut)?;
+            let bytes = self.bytes.get(start..).ok_or_else(cut)?;
+            let total = count.checked_mul(each).ok_or_else(cut)?;
+            if self.compressed {
+                packed.extend(split(bytes, total).ok_or_else(cut)?);
+                continue;
+            }
             let (size, bytes) = bytes.split_first_chunk().ok_or_else(cut)?;
             let whole = bytes.get(..total).filter(|_| u64::from_le_bytes(*size) == total as u64);
-            return Ok(vec![read(whole.ok_or_else(cut)?)]);
+            read_all.push(read(whole.ok_or_else(cut)?));
         }
-        let blocks = split(bytes, total).ok_or_else(cut)?;
-        let unpacked: Option<Vec<R>> = blocks
+        let unpacked: Option<Vec<R>> = packed
             .into_par_iter()
             .map(|(packed, size)| {
                 let mut bytes = Vec::with_capacity(size);
@@ -223,7 +246,8 @@ impl PointArrays {
                 (bytes.len() == size).then(|| read(&bytes))
             })
             .collect();
-        unpacked.ok_or_else(cut)
+        read_all.extend(unpacked.ok_or_else(cut)?);
+        Ok(read_all)
     }
 
     /// Unpacks all that each point has, which holds it against its own checksums.

@@ -6,6 +6,7 @@ use crate::observe::file::{FileSum, OutputError, replace_summed};
 use crate::scene::{Compression, Precision, SnapshotContent};
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -28,13 +29,35 @@ pub struct VtkFile {
     data_set: DataSet,
     precision: Precision,
     compression: Compression,
+    fields: Vec<(&'static str, f64)>,
+    /// At least one.
+    pieces: Vec<Piece>,
+}
+
+/// Some of the points of a file, and the cells between them.
+struct Piece {
     points: usize,
     /// Of cells.
     count: usize,
-    fields: Vec<(&'static str, f64)>,
     geometry: Vec<Array>,
     cells: Vec<Array>,
     point_data: Vec<Array>,
+}
+
+/// How large a piece of a file is, and its arrays: all that the header says of it. All pieces have the same arrays.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(in crate::observe) struct PieceSize {
+    points: usize,
+    cells: usize,
+    /// Bytes of each array, in the order of the file.
+    arrays: Vec<u64>,
+}
+
+impl PieceSize {
+    /// That of a piece of points, each a cell of its own, before its arrays are known.
+    pub(in crate::observe) fn of_points(points: usize) -> Self {
+        PieceSize { points, cells: points, arrays: Vec::new() }
+    }
 }
 
 struct Array {
@@ -129,7 +152,9 @@ impl VtkFile {
     /// Says that all cells are of one type, which makes a grid of them.
     fn typed(&mut self, kind: u8) {
         self.data_set = DataSet::UnstructuredGrid;
-        self.cells.push(Array::new("types", NUMBER, (&vec![kind; self.count], self.compression)));
+        let compression = self.compression;
+        let Piece { cells, count, .. } = self.last();
+        cells.push(Array::new("types", NUMBER, (&vec![kind; *count], compression)));
     }
 
     /// Polygons of so many points each, by the numbers of these.
@@ -145,16 +170,32 @@ impl VtkFile {
             data_set: DataSet::PolyData,
             precision,
             compression,
-            points: positions.len(),
-            count: cells,
             fields: vec![(TIME, time)],
-            geometry: vec![Array::real("points", VECTOR, (positions.as_flattened(), precision, compression))],
-            cells: vec![
-                Array::new("connectivity", NUMBER, (corners, compression)),
-                Array::new("offsets", NUMBER, (&ends, compression)),
-            ],
-            point_data: Vec::new(),
+            pieces: vec![Piece {
+                points: positions.len(),
+                count: cells,
+                geometry: vec![Array::real(
+                    "points",
+                    VECTOR,
+                    (positions.as_flattened(), precision, compression),
+                )],
+                cells: vec![
+                    Array::new("connectivity", NUMBER, (corners, compression)),
+                    Array::new("offsets", NUMBER, (&ends, compression)),
+                ],
+                point_data: Vec::new(),
+            }],
         }
+    }
+
+    /// Puts the pieces of another file behind its own, which has the same arrays.
+    pub(in crate::observe) fn append(&mut self, other: VtkFile) {
+        self.pieces.extend(other.pieces);
+    }
+
+    /// The piece to which arrays are added.
+    fn last(&mut self) -> &mut Piece {
+        self.pieces.last_mut().expect("there is always one")
     }
 
     /// Adds a number that holds for the whole file.
@@ -164,8 +205,10 @@ impl VtkFile {
 
     /// Adds an array with a whole number for each point.
     pub(in crate::observe) fn whole<T: Scalar>(&mut self, name: &'static str, values: &[T]) {
-        assert_eq!(values.len(), self.points, "`{name}` has a value for each point");
-        self.point_data.push(Array::new(name, NUMBER, (values, self.compression)));
+        let compression = self.compression;
+        let Piece { points, point_data, .. } = self.last();
+        assert_eq!(values.len(), *points, "`{name}` has a value for each point");
+        point_data.push(Array::new(name, NUMBER, (values, compression)));
     }
 
     /// Adds an array with a value of so many components for each point, in the file's precision.
@@ -175,14 +218,16 @@ impl VtkFile {
         components: &'static [&'static str],
         values: &[f64],
     ) {
-        assert_eq!(values.len(), self.points * components.len(), "`{name}` has a value for each point");
-        self.point_data.push(Array::real(name, components, (values, self.precision, self.compression)));
+        let (precision, compression) = (self.precision, self.compression);
+        let Piece { points, point_data, .. } = self.last();
+        assert_eq!(values.len(), *points * components.len(), "`{name}` has a value for each point");
+        point_data.push(Array::real(name, components, (values, precision, compression)));
     }
 
     /// Adds an array that is described: its name, its unit and what each point has.
     pub(in crate::observe) fn described(&mut self, (name, unit): (&str, &str), kind: Kind, values: &[f64]) {
         self.real(ANY, components(kind), values);
-        let array = self.point_data.last_mut().expect("it was just added");
+        let array = self.last().point_data.last_mut().expect("it was just added");
         (array.name, array.unit) = (Cow::Owned(name.to_string()), unit.to_string());
     }
 
@@ -200,25 +245,37 @@ impl VtkFile {
     /// As [`VtkFile::write`].
     pub(in crate::observe) fn put(&self, path: &Path) -> Result<FileSum, OutputError> {
         replace_summed(path, |file| {
-            file.write_all(self.header().as_bytes())?;
-            self.arrays().try_for_each(|array| file.write_all(&array.bytes))?;
-            file.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+            file.write_all(self.header(&self.sizes()).as_bytes())?;
+            let mut arrays = self.pieces.iter().flat_map(Piece::arrays);
+            arrays.try_for_each(|array| file.write_all(&array.bytes))?;
+            file.write_all(END)
         })
     }
 
-    fn arrays(&self) -> impl Iterator<Item = &Array> {
-        self.geometry.iter().chain(&self.cells).chain(&self.point_data)
+    /// How large its pieces are.
+    pub(in crate::observe) fn sizes(&self) -> Vec<PieceSize> {
+        self.pieces.iter().map(Piece::size).collect()
     }
 
-    /// Everything before the first byte of the appended data.
-    fn header(&self) -> String {
-        let (points, cells) = (self.points, self.count);
-        let (data_set, members, counts) = match self.data_set {
-            DataSet::UnstructuredGrid => ("UnstructuredGrid", "Cells", format!("NumberOfCells=\"{cells}\"")),
-            DataSet::PolyData => {
-                let others = "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\"";
-                ("PolyData", "Polys", format!("{others} NumberOfPolys=\"{cells}\""))
-            }
+    /// The bytes of all arrays as they lie in the file; what is left is its header.
+    pub(in crate::observe) fn take_bytes(&mut self) -> Vec<u8> {
+        let arrays = self.pieces.iter_mut().flat_map(|piece| {
+            let Piece { geometry, cells, point_data, .. } = piece;
+            geometry.iter_mut().chain(cells).chain(point_data)
+        });
+        // Each array goes as soon as it is copied.
+        arrays.fold(Vec::new(), |mut bytes, array| {
+            bytes.extend_from_slice(&std::mem::take(&mut array.bytes));
+            bytes
+        })
+    }
+
+    /// Everything before the first byte of the appended data, of a file with arrays like its own in pieces of these
+    /// sizes. How long it is does not depend on how long arrays are.
+    pub(in crate::observe) fn header(&self, pieces: &[PieceSize]) -> String {
+        let data_set = match self.data_set {
+            DataSet::UnstructuredGrid => "UnstructuredGrid",
+            DataSet::PolyData => "PolyData",
         };
         let mut xml = format!(
             "<?xml version=\"1.0\"?>\n\
@@ -234,24 +291,59 @@ impl VtkFile {
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value:e}</DataArray>\n"
             );
         }
-        xml += &format!("</FieldData>\n<Piece NumberOfPoints=\"{points}\" {counts}>\n");
+        xml += "</FieldData>\n";
         let mut offset = 0;
-        for (tag, arrays) in
-            [("Points", &self.geometry), (members, &self.cells), ("PointData", &self.point_data)]
-        {
-            xml += &format!("<{tag}>\n");
-            for array in arrays {
-                array.declare(offset, &mut xml);
-                offset += array.bytes.len();
+        pieces.iter().for_each(|piece| self.declare(piece, &mut offset, &mut xml));
+        xml + &format!("</{data_set}>\n<AppendedData encoding=\"raw\">\n_")
+    }
+
+    /// What the header says of a piece whose arrays begin at an offset.
+    fn declare(&self, size: &PieceSize, offset: &mut u64, xml: &mut String) {
+        let &PieceSize { points, cells, ref arrays } = size;
+        let (members, counts) = match self.data_set {
+            DataSet::UnstructuredGrid => ("Cells", format!("NumberOfCells=\"{cells}\"")),
+            DataSet::PolyData => {
+                let others = "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\"";
+                ("Polys", format!("{others} NumberOfPolys=\"{cells}\""))
             }
-            xml += &format!("</{tag}>\n");
+        };
+        *xml += &format!("<Piece NumberOfPoints=\"{points}\" {counts}>\n");
+        let (like, mut lengths) = (&self.pieces[0], arrays.iter());
+        for (tag, arrays) in
+            [("Points", &like.geometry), (members, &like.cells), ("PointData", &like.point_data)]
+        {
+            *xml += &format!("<{tag}>\n");
+            for array in arrays {
+                array.declare(*offset, xml);
+                *offset += lengths.next().copied().unwrap_or_default();
+            }
+            *xml += &format!("</{tag}>\n");
         }
-        xml + &format!("</Piece>\n</{data_set}>\n<AppendedData encoding=\"raw\">\n_")
+        *xml += "</Piece>\n";
+    }
+}
+
+/// Letters of an offset at most.
+const MOST_OF_OFFSET: usize = "offset=\"\"".len() + 15;
+
+/// What stands behind the appended data.
+pub(in crate::observe) const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
+impl Piece {
+    fn arrays(&self) -> impl Iterator<Item = &Array> {
+        self.geometry.iter().chain(&self.cells).chain(&self.point_data)
+    }
+
+    fn size(&self) -> PieceSize {
+        let arrays = self.arrays().map(|array| array.bytes.len() as u64).collect();
+        PieceSize { points: self.points, cells: self.count, arrays }
     }
 }
 
 impl Array {
-    fn declare(&self, offset: usize, xml: &mut String) {
+    /// What the header says of it, as long whatever the offset is: with blanks behind it, since meshio looks for the
+    /// number as it is.
+    fn declare(&self, offset: u64, xml: &mut String) {
         let Array { name, unit, kind, components, .. } = self;
         let count = components.len();
         let mut line = || -> std::fmt::Result {
@@ -264,7 +356,8 @@ impl Array {
                     write!(xml, " ComponentName{i}=\"{component}\"")?;
                 }
             }
-            writeln!(xml, " format=\"appended\" offset=\"{offset}\"/>")
+            let offset = format!("offset=\"{offset}\"");
+            writeln!(xml, " format=\"appended\" {offset:<MOST_OF_OFFSET$}/>")
         };
         line().expect("a string takes all text");
     }

@@ -16,8 +16,8 @@ pub(super) struct Neighbours {
     numbers: Vec<u32>,
     /// Whether some of them have left the domain.
     lost: bool,
-    /// Place in `start` of each particle of the body, by its number.
-    place: Vec<u32>,
+    /// Place in `start` of each of them, by its number.
+    place: HashMap<u32, u32>,
 }
 
 /// Particles in all bodies that deform whose neighbours are chosen; in a body at least [`FEWEST`] of them.
@@ -25,63 +25,101 @@ const MOST: usize = 500;
 const FEWEST: usize = 24;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
 const NEAR: f64 = 1.5;
-/// Not chosen.
-const NONE: u32 = u32::MAX;
-
 /// Neighbours in each body; none in a rigid one.
 pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
     // Rigid ones do not count: without bounds they have others all the time.
-    let of_body = |i: usize| view.column(i, "start").map_or(0, |start| start.len());
-    let all = (0..scene.bodies.len()).filter(|&i| !scene.bodies[i].is_rigid()).map(of_body).sum();
-    (scene.bodies.iter().enumerate())
-        .map(|(i, body)| if body.is_rigid() { Neighbours::default() } else { Neighbours::new(view, i, all) })
+    let deforms = |i: &usize| !scene.bodies[*i].is_rigid();
+    let extents: Vec<Extent> = (0..scene.bodies.len())
+        .map(|i| if deforms(&i) { Extent::of(view, i) } else { Extent::default() })
+        .collect();
+    let all = extents.iter().map(|extent| extent.count).sum();
+    (extents.into_iter().enumerate())
+        .map(|(i, extent)| match extent.count {
+            0 => Neighbours::default(),
+            _ => Neighbours::new(view, (i, extent), all),
+        })
         .collect()
 }
 
-impl Neighbours {
-    fn new(view: &dyn View, body: usize, all: usize) -> Self {
-        let Ok(column) = view.column(body, "start") else { return Neighbours::default() };
-        let mut numbers = column.numbers().to_vec();
+/// How many particles a body has.
+#[derive(Clone, Copy, Default)]
+struct Extent {
+    count: usize,
+    /// One more than the largest of their numbers.
+    end: usize,
+}
+
+impl Extent {
+    fn of(view: &dyn View, body: usize) -> Self {
+        let mut extent = Extent::default();
+        visit_starts(view, body, &mut |number, _| {
+            (extent.count, extent.end) = (extent.count + 1, extent.end.max(number as usize + 1));
+        });
+        extent
+    }
+
+    /// The numbers of the particles that stand at some places in the order of numbers.
+    fn numbers_at(self, places: Vec<u32>, (view, body): (&dyn View, usize)) -> Vec<u32> {
+        if self.end == self.count {
+            return places;
+        }
+        let mut numbers = Vec::with_capacity(self.count);
+        visit_starts(view, body, &mut |number, _| numbers.push(number));
         numbers.sort_unstable();
-        let most = numbers.last().map_or(0, |&last| last as usize + 1);
-        let mut start = vec![[0.0; 3]; most];
-        column.rows::<3>().for_each(|(number, x)| start[number as usize] = x);
-        let chosen = chosen(numbers.len(), (MOST * numbers.len() / all.max(1)).max(FEWEST));
-        let chosen: Vec<u32> = chosen.into_iter().map(|rank| numbers[rank as usize]).collect();
-        let mut seeds = vec![false; most];
-        chosen.iter().for_each(|&number| seeds[number as usize] = true);
+        places.into_iter().map(|place| numbers[place as usize]).collect()
+    }
+}
+
+/// Shows where the particles of a body were before anything moved [m]; of a simulation that does not know it none.
+fn visit_starts(view: &dyn View, body: usize, look: &mut dyn FnMut(u32, [f64; 3])) {
+    let mut look = |number: u32, x: &[f64]| look(number, [x[0], x[1], x[2]]);
+    // What has no such column has no neighbours.
+    let _ = view.visit_column(body, "start", &mut look);
+}
+
+impl Neighbours {
+    fn new(view: &dyn View, (body, extent): (usize, Extent), all: usize) -> Self {
+        let wanted = (MOST * extent.count / all.max(1)).max(FEWEST);
+        let chosen = extent.numbers_at(chosen(extent.count, wanted), (view, body));
+        let seeds: HashSet<u32> = chosen.iter().copied().collect();
         let traced = view.trace(body, &chosen);
         let widest = traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max);
         if widest == 0.0 {
             return Neighbours::default();
         }
+        let mut start: HashMap<u32, [f64; 3]> = HashMap::new();
+        visit_starts(view, body, &mut |number, x| {
+            if seeds.contains(&number) {
+                start.insert(number, x);
+            }
+        });
 
-        // All particles by cells as wide as the farthest neighbour, as far as a chosen one is near.
+        // Particles by cells as wide as the farthest neighbour, as far as a chosen one is near.
         let side = 2.0 * NEAR * widest;
         let cell = |x: [f64; 3]| x.map(|x| (x / side).floor() as i64);
         let around = |[i, j, k]: [i64; 3]| {
             let near = move |d: i64| [i + d % 3 - 1, j + d / 3 % 3 - 1, k + d / 9 - 1];
             (0..27).map(near)
         };
-        let near: HashSet<[i64; 3]> = chosen.iter().flat_map(|&n| around(cell(start[n as usize]))).collect();
+        let near: HashSet<[i64; 3]> = start.values().flat_map(|&x| around(cell(x))).collect();
         let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-        for &number in &numbers {
-            let x = start[number as usize];
+        visit_starts(view, body, &mut |number, x| {
             if near.contains(&cell(x)) {
                 cells.entry(cell(x)).or_default().push(number);
+                start.insert(number, x);
             }
-        }
+        });
+        cells.values_mut().for_each(|numbers| numbers.sort_unstable());
 
-        let mut half_width = vec![0.0; start.len()];
-        traced.iter().for_each(|particle| half_width[particle.number as usize] = particle.half_width);
-        let mut neighbours = Neighbours { place: vec![NONE; start.len()], ..Neighbours::default() };
-        for &a in &chosen {
-            let reach = 2.0 * NEAR * half_width[a as usize];
-            for &b in around(cell(start[a as usize])).filter_map(|cell| cells.get(&cell)).flatten() {
-                let distance = super::norm(super::minus(start[a as usize], start[b as usize]));
-                let twice = seeds[b as usize] && b <= a;
+        let mut neighbours = Neighbours::default();
+        for particle in &traced {
+            let a = particle.number;
+            let reach = 2.0 * NEAR * particle.half_width;
+            for &b in around(cell(start[&a])).filter_map(|cell| cells.get(&cell)).flatten() {
+                let distance = super::norm(super::minus(start[&a], start[&b]));
+                let twice = seeds.contains(&b) && b <= a;
                 if !twice && distance > 0.0 && distance <= reach {
-                    let pair = [a, b].map(|number| neighbours.choose(number, &start));
+                    let pair = [a, b].map(|number| neighbours.choose(number, start[&number]));
                     neighbours.pairs.push(pair);
                 }
             }
@@ -89,15 +127,13 @@ impl Neighbours {
         neighbours
     }
 
-    /// Place in `start` of a particle that is chosen now or was before.
-    fn choose(&mut self, number: u32, start: &[[f64; 3]]) -> u32 {
-        let place = &mut self.place[number as usize];
-        if *place == NONE {
-            *place = self.start.len() as u32;
-            self.start.push(start[number as usize]);
+    /// Place in `start` of a particle that began there and is chosen now or was before.
+    fn choose(&mut self, number: u32, start: [f64; 3]) -> u32 {
+        *self.place.entry(number).or_insert_with(|| {
+            self.start.push(start);
             self.numbers.push(number);
-        }
-        *place
+            self.start.len() as u32 - 1
+        })
     }
 
     /// The chosen particles now, in the order of `start`; those that have left the domain are chosen no more.
@@ -105,7 +141,7 @@ impl Neighbours {
         if self.start.is_empty() {
             return Vec::new();
         }
-        let place = |number: u32| self.place.get(number as usize).copied().unwrap_or(NONE);
+        let place = |number: u32| self.place.get(&number).copied();
         let mut wanted = self.numbers.clone();
         wanted.sort_unstable();
         let mut traced = view.trace(body, &wanted);
@@ -119,27 +155,20 @@ impl Neighbours {
     /// Chooses these only, of those that are chosen, in the same order.
     fn keep(&mut self, numbers: Vec<u32>) {
         self.lost = true;
-        let mut now = vec![NONE; self.start.len()];
-        for (new, &number) in numbers.iter().enumerate() {
-            now[self.place[number as usize] as usize] = new as u32;
+        let mut now = vec![None; self.start.len()];
+        for (new, number) in (0..).zip(&numbers) {
+            now[self.place[number] as usize] = Some(new);
         }
-        let mut there = now.iter().map(|&new| new != NONE);
+        let mut there = now.iter().map(Option::is_some);
         self.start.retain(|_| there.next().unwrap_or(false));
-        self.pairs = (self.pairs.iter())
-            .map(|pair| pair.map(|place| now[place as usize]))
-            .filter(|pair| !pair.contains(&NONE))
-            .collect();
+        let pairs = self.pairs.iter().map(|pair| pair.map(|place| now[place as usize]));
+        self.pairs = pairs.filter_map(|[a, b]| Some([a?, b?])).collect();
         self.numbers = numbers;
         self.find_places();
     }
 
     fn find_places(&mut self) {
-        self.place.fill(NONE);
-        let most = self.numbers.iter().max().map_or(0, |&most| most as usize + 1);
-        self.place.resize(most.max(self.place.len()), NONE);
-        for (place, &number) in self.numbers.iter().enumerate() {
-            self.place[number as usize] = place as u32;
-        }
+        self.place = self.numbers.iter().copied().zip(0..).collect();
     }
 
     /// Keeps what was chosen once some of it is gone, or takes that up: it cannot be chosen anew then.

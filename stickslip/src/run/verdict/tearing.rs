@@ -2,7 +2,7 @@
 
 use super::{Check, CheckInputs, Finding, minus, place};
 use crate::door::TracedParticle;
-use crate::observe::{Memory, OutputError};
+use crate::observe::{Memory, OutputError, has_near};
 use crate::scene::{BasisKind, HealthCheck, Scene};
 
 /// Looks for neighbours that no longer share a node of the grid.
@@ -81,14 +81,10 @@ fn tear(look: &CheckInputs, body: usize) -> Option<Tear> {
     parted.sort_by(|a, b| b.0.total_cmp(&a.0));
     parted.truncate(LOOKED_INTO);
     // Neighbours that slid apart by plastic flow have others between them.
-    let mut empty = vec![true; parted.len()];
+    let middles: Vec<[f64; 3]> = parted.iter().map(|(_, middle)| *middle).collect();
     let half = 0.5 * look.scene.discretization.cell;
-    look.simulation.visit(body, &mut |particle| {
-        for (empty, (_, middle)) in empty.iter_mut().zip(&parted) {
-            *empty &= distance(particle.position, *middle) > half;
-        }
-    });
-    let (excess, position) = parted.into_iter().zip(empty).find(|(_, empty)| *empty)?.0;
+    let filled = has_near(look.simulation, body, (&middles, half));
+    let (excess, position) = parted.into_iter().zip(filled).find(|(_, filled)| !*filled)?.0;
     Some(Tear { share: count as f64 / pairs.len() as f64, excess, position })
 }
 
@@ -101,11 +97,6 @@ fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> [f64; 3]
             std::array::from_fn(|i| cell + a.half_sides[i] + b.half_sides[i])
         }
     }
-}
-
-/// Largest distance along an axis [m].
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    minus(a, b).into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
 fn middle(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

@@ -1,0 +1,156 @@
+//! A saved state, which ranks take up: each some of its particles, which then go to those that own their blocks.
+
+use super::{Home, read_particles, write_particles};
+use crate::basis::Basis;
+use crate::door::{RestoreError, SavedShare, SavedState};
+use crate::lanes::Laned;
+use crate::ranks::{Message, Partition, Ranks, combined, gathered};
+use crate::scene::Scene;
+use crate::step::Engine;
+use crate::step::build::walk;
+use crate::step::saving::{append, began_at};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Finds the shares of a saved state that a rank takes up, and shows them one after the other.
+pub(crate) type Find<'a> = &'a mut dyn FnMut(&mut dyn FnMut(Vec<SavedShare>)) -> Result<(), String>;
+
+/// Particles that a rank sends and takes at a time.
+const AT_A_TIME: usize = 1 << 16;
+
+/// Of a body, its particles on a rank: how many, and the smallest number with the block of that particle.
+#[derive(Clone, Serialize, Deserialize)]
+struct Found {
+    count: u64,
+    first: Option<(u32, Vec<i32>)>,
+}
+
+impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+    /// Takes up a state, of which `find` gives this rank some particles, as one of several ranks; before, it has no
+    /// particles.
+    ///
+    /// # Errors
+    /// It is of another scene, or a rank does not find what it should; then all ranks say so.
+    pub(in crate::step) fn take_up_among(
+        &mut self,
+        (scene, ranks): (&Scene, Arc<dyn Ranks>),
+        rest: &SavedState,
+        find: Find,
+    ) -> Result<(), RestoreError> {
+        // All ranks have the same of it, and find the same wrong with it.
+        self.check_rest(rest)?;
+        let mut taken = Ok(());
+        let found = find(&mut |shares| {
+            for share in shares {
+                let body = self.state.bodies.get_mut(share.body);
+                let appended = body
+                    .ok_or_else(|| RestoreError("it has more bodies than the scene".to_string()))
+                    .and_then(|body| append(&body.name, &mut body.particles, &share));
+                taken = std::mem::replace(&mut taken, Ok(())).and(appended);
+            }
+        });
+        let own = found.map_err(RestoreError).and(taken);
+        first_problem(&*ranks, own)?;
+
+        let mut loads: HashMap<[i32; D], u64> = HashMap::new();
+        let mut of_bodies = Vec::new();
+        for body in &self.state.bodies {
+            let particles = &body.particles;
+            let blocks = (0..particles.len()).map(|particle| self.block_of(particles, particle));
+            blocks.for_each(|block| *loads.entry(block).or_default() += 1);
+            let first = (particles.numbers().iter().zip(0..)).min();
+            let first = first.map(|(&number, place)| (number, self.block_of(particles, place).to_vec()));
+            of_bodies.push(Found { count: particles.len() as u64, first });
+        }
+        let of_bodies = combined(&*ranks, &of_bodies, |mut all: Vec<Found>, others| {
+            for (one, other) in all.iter_mut().zip(others) {
+                one.count += other.count;
+                one.first = one.first.take().into_iter().chain(other.first).min();
+            }
+            all
+        });
+        let counts = of_bodies.iter().map(|body| body.count as usize);
+        for ((body, filled), (saved, count)) in
+            (self.state.bodies.iter().zip(&self.settings.filled)).zip(rest.bodies.iter().zip(counts))
+        {
+            if *filled > 0 && count.checked_add(saved.missing) != Some(*filled) {
+                let name = &body.name;
+                return Err(RestoreError(format!(
+                    "body `{name}` has {filled} particles in the scene, and {count} in it"
+                )));
+            }
+        }
+
+        let block = |at: &[i32]| std::array::from_fn(|k| at[k]);
+        let own: Vec<(Vec<i32>, u64)> = loads.into_iter().map(|(at, load)| (at.to_vec(), load)).collect();
+        let loads = gathered(&*ranks, &own).concat();
+        let loads = loads.iter().map(|(at, load)| (block(at), *load));
+        let partition = Partition::balanced::<D>(ranks.count(), None, loads);
+        let home = |(body, &filled): (Found, &usize)| {
+            let rank =
+                body.first.filter(|_| filled > 0).map_or(0, |(_, at)| partition.owner::<D>(block(&at)));
+            Home::new(rank, filled)
+        };
+        let homes = of_bodies.into_iter().zip(&self.settings.filled).map(home).collect();
+        self.join(ranks.clone(), (partition, homes));
+        self.take_up_rest(rest.clone());
+        let among = self.among.as_ref().expect("it has joined the others");
+        self.state.contact_sums.keep(|bodies| among.keeps(bodies));
+        self.send_home();
+        first_problem(&*ranks, self.check_starts(scene))
+    }
+
+    /// Sends all particles to the ranks that own their blocks, some at a time.
+    fn send_home(&mut self) {
+        let ranks = self.among.as_ref().expect("it has joined the others").ranks.clone();
+        let at_a_time = (AT_A_TIME / ranks.count()).max(256);
+        loop {
+            let mut messages: Vec<Message> = Vec::new();
+            let mut room = vec![at_a_time; ranks.count()];
+            for body in 0..self.state.bodies.len() {
+                let particles = &self.state.bodies[body].particles;
+                let mut gone: Vec<(usize, u32)> = Vec::new();
+                for particle in self.of_other_ranks(particles) {
+                    let owner = self.owner_of(particles, particle as usize);
+                    if room[owner] > 0 {
+                        room[owner] -= 1;
+                        gone.push((owner, particle));
+                    }
+                }
+                let places: Vec<u32> = gone.iter().map(|&(_, particle)| particle).collect();
+                gone.sort_unstable();
+                write_particles((body, particles), &gone, &mut messages);
+                self.state.bodies[body].particles.take_out(&places);
+            }
+            let some = !messages.is_empty();
+            for (_, message) in ranks.exchange(messages) {
+                read_particles(&message, &mut self.state.bodies, &mut |_, _, _| ());
+            }
+            if !self.on_any_rank(some) {
+                break;
+            }
+        }
+        self.state.bodies.iter_mut().for_each(|body| body.particles.fit());
+    }
+
+    /// Looks whether particles began where the scene has them begin.
+    fn check_starts(&self, scene: &Scene) -> Result<(), RestoreError> {
+        for ((body, own), &filled) in scene.bodies.iter().zip(&self.state.bodies).zip(&self.settings.filled) {
+            if filled > 0 && !began_at(&own.particles, walk(scene, body)) {
+                return Err(RestoreError(format!(
+                    "body `{}` began elsewhere than it does in the scene",
+                    own.name
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is wrong on the first rank on which something is, for all.
+fn first_problem(ranks: &dyn Ranks, own: Result<(), RestoreError>) -> Result<(), RestoreError> {
+    let own = own.err().map(|RestoreError(problem)| problem);
+    let all = gathered(ranks, &own);
+    all.into_iter().flatten().next().map_or(Ok(()), |problem| Err(RestoreError(problem)))
+}

@@ -1,0 +1,135 @@
+//! Sections of checkpoints: some particles each.
+
+use super::{CheckpointForm, MOST_COMPRESSED, START, Summed, damage, damaged};
+use crate::door::{SavedShare, SavedState};
+use crate::observe::file::ReadProblem;
+use flate2::Compression;
+use flate2::bufread::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+
+/// Where a section lies, and what it is made of.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(in crate::observe) struct Section {
+    place: u64,
+    bytes: u64,
+    /// Whether they are packed by zlib.
+    packed: bool,
+    /// Their SHA-256.
+    #[serde(with = "serde_bytes")]
+    sum: Vec<u8>,
+}
+
+/// Particles of a section, at most.
+pub(in crate::observe) const MOST_PARTICLES: usize = 1 << 15;
+
+/// Sections that are made one after the other.
+pub(in crate::observe) struct Sections {
+    form: CheckpointForm,
+    pub list: Vec<Section>,
+}
+
+impl Sections {
+    /// None so far.
+    pub(in crate::observe) fn new(form: CheckpointForm) -> Self {
+        Sections { form, list: Vec::new() }
+    }
+
+    /// Shows the particles of a state, those of a section at a time.
+    pub(in crate::observe) fn of_state(
+        state: &SavedState,
+        take: &mut dyn FnMut(Vec<SavedShare>) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let (mut shares, mut room) = (Vec::new(), MOST_PARTICLES);
+        for (number, body) in state.bodies.iter().enumerate() {
+            let mut first = 0;
+            while first < body.numbers.len() {
+                let end = body.numbers.len().min(first + room);
+                shares.push(body.share(number, first..end));
+                (first, room) = (end, room - (end - first));
+                if room == 0 {
+                    take(std::mem::take(&mut shares))?;
+                    room = MOST_PARTICLES;
+                }
+            }
+        }
+        if shares.is_empty() { Ok(()) } else { take(shares) }
+    }
+
+    /// The bytes of the next one.
+    pub(in crate::observe) fn add(&mut self, shares: Vec<SavedShare>) -> Vec<u8> {
+        let place = self.list.last().map_or(START as u64, Section::end);
+        let (section, bytes) = Section::of(&shares, self.form);
+        self.list.push(section.at(place));
+        bytes
+    }
+}
+
+impl Section {
+    /// That of some particles, and its bytes.
+    pub(in crate::observe) fn of(shares: &[SavedShare], form: CheckpointForm) -> (Self, Vec<u8>) {
+        let plain = rmp_serde::to_vec(shares).expect("memory takes what is written");
+        let packed = || {
+            let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+            packed.write_all(&plain).and_then(|()| packed.finish()).expect("memory takes all bytes")
+        };
+        let packed = (form == CheckpointForm::Compressed).then(packed);
+        let packed = packed.filter(|packed| plain.len() as u64 <= MOST_COMPRESSED * packed.len() as u64);
+        let (is_packed, bytes) = packed.map_or((false, plain), |packed| (true, packed));
+        let sum = Sha256::digest(&bytes).to_vec();
+        (Section { place: 0, bytes: bytes.len() as u64, packed: is_packed, sum }, bytes)
+    }
+
+    /// The same there.
+    pub(in crate::observe) fn at(self, place: u64) -> Self {
+        Section { place, ..self }
+    }
+
+    pub(in crate::observe) fn place(&self) -> u64 {
+        self.place
+    }
+
+    /// Where the next one begins.
+    pub(in crate::observe) fn end(&self) -> u64 {
+        self.place.saturating_add(self.bytes)
+    }
+
+    /// Looks whether it is in a file as it was written, of which little is in memory at a time.
+    pub(super) fn check(&self, file: &mut File) -> Result<(), ReadProblem> {
+        file.seek(SeekFrom::Start(self.place))?;
+        let mut summed = Summed { file: io::sink(), sum: Sha256::new() };
+        let read = io::copy(&mut file.take(self.bytes), &mut summed)?;
+        if read == self.bytes && summed.sum.finalize()[..] == self.sum[..] { Ok(()) } else { Err(damaged()) }
+    }
+
+    /// Its bytes in a file.
+    pub(in crate::observe) fn bytes(&self, file: &mut File) -> io::Result<Vec<u8>> {
+        file.seek(SeekFrom::Start(self.place))?;
+        let mut bytes = Vec::new();
+        file.take(self.bytes).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Its particles in a file.
+    pub(super) fn read(&self, file: &mut File) -> Result<Vec<SavedShare>, ReadProblem> {
+        self.shares(&self.bytes(file)?)
+    }
+
+    /// The particles in its bytes.
+    pub(in crate::observe) fn shares(&self, bytes: &[u8]) -> Result<Vec<SavedShare>, ReadProblem> {
+        if Sha256::digest(bytes)[..] != self.sum[..] {
+            return Err(damaged());
+        }
+        let decoded = match self.packed {
+            false => rmp_serde::from_slice(bytes),
+            true => {
+                let most = MOST_COMPRESSED * bytes.len() as u64;
+                rmp_serde::from_read(BufReader::new(ZlibDecoder::new(bytes).take(most)))
+            }
+        };
+        decoded.map_err(|error| damage(&error))
+    }
+}

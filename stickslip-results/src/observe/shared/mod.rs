@@ -1,0 +1,183 @@
+//! What the programs of ranks that share a simulation do together: each with the particles that it has.
+
+mod joint_file;
+mod question;
+
+pub use question::has_near;
+pub(super) use question::{Asked, Question, answer};
+
+use super::checkpoint::{CheckpointForm, MOST_PARTICLES, START, Section};
+use super::file::FileSum;
+use super::particles::{PieceStart, chosen, count_by_stretch, cut, encode_piece};
+use super::vtk::{END, PieceSize};
+use crate::door::{ParticleSnapshot, RestoreError, SavedShare, SavedState, Simulation, View};
+use crate::ranks::{Message, Ranks, bytes_of, combined, gathered, message_to, read};
+use crate::scene::SnapshotContent;
+use joint_file::{JointFile, JointReading, Trouble};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf, absolute};
+use stickslip_engine::shared::Program;
+
+/// What the programs of ranks can do with files of results.
+pub const PROGRAM: Program = Program { act, find };
+
+/// What the first rank asks of all.
+#[derive(Serialize, Deserialize)]
+enum Request {
+    /// A file of particles.
+    Particles(ParticlesRequest),
+    /// The sections of a checkpoint there, packed or not.
+    Sections(PathBuf, bool),
+    /// Something about all particles.
+    Question(Asked),
+}
+
+/// A file of particles that ranks write together.
+#[derive(Serialize, Deserialize)]
+pub(super) struct ParticlesRequest {
+    pub path: PathBuf,
+    pub time: f64,
+    pub content: SnapshotContent,
+    /// Of each body, whether its particles are written.
+    pub bodies: Vec<bool>,
+}
+
+fn act(own: &dyn Simulation, ranks: &dyn Ranks, asked: &[u8]) -> Vec<u8> {
+    match read(asked) {
+        Request::Particles(request) => bytes_of(&put_particles(own, ranks, &request)),
+        Request::Sections(path, packed) => {
+            let form = if packed { CheckpointForm::Compressed } else { CheckpointForm::Plain };
+            bytes_of(&put_sections(own, ranks, (&path, form)))
+        }
+        Request::Question(asked) => asked.said(own, ranks),
+    }
+}
+
+/// What the first rank says of what all have done; none of a simulation that nobody shares.
+fn ask<X: for<'de> Deserialize<'de>>(view: &dyn View, request: &Request) -> Option<io::Result<X>> {
+    let said = view.ask_ranks(&|| bytes_of(request))?;
+    let done: Result<X, Trouble> = read(&said[0]);
+    Some(done.map_err(io::Error::from))
+}
+
+/// Has ranks write a file of their particles, the same as one would write: what went into it. None of a simulation that
+/// nobody shares.
+///
+/// # Errors
+/// The disk of one of them is full or refuses.
+pub(super) fn write_particles(view: &dyn View, request: ParticlesRequest) -> Option<io::Result<FileSum>> {
+    let path = absolute(&request.path).unwrap_or(request.path);
+    ask(view, &Request::Particles(ParticlesRequest { path, ..request }))
+}
+
+/// Each rank packs every so many-th piece, for which the others send it particles.
+fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest) -> Result<FileSum, Trouble> {
+    let ParticlesRequest { path, time, content, bodies } = request;
+    let mut own = BTreeMap::new();
+    for body in (0..bodies.len()).filter(|&body| bodies[body]) {
+        let mut numbers = Vec::new();
+        // Whatever has no masses has no particles.
+        let _ = view.visit_column(body, "mass", &mut |number, _| numbers.push(number));
+        let wanted = numbers.into_iter().filter(|number| (*number as usize).is_multiple_of(content.every));
+        own.extend(count_by_stretch(wanted.map(|number| (body as u32, number))));
+    }
+    let counts = combined(ranks, &own, |mut all, others| {
+        others.into_iter().for_each(|(stretch, count)| *all.entry(stretch).or_default() += count);
+        all
+    });
+    let pieces = cut(&counts);
+    let ends: Vec<(u32, u32)> =
+        pieces[1..].iter().map(PieceStart::begin).chain([(bodies.len() as u32, 0)]).collect();
+    let sizes: Vec<PieceSize> = pieces.iter().map(|piece| PieceSize::of_points(piece.points)).collect();
+    let mut first = None;
+    let mut file: Option<JointFile> = None;
+    let mut found = Vec::new();
+    for round in (0..pieces.len()).step_by(ranks.count()) {
+        let mut parts = Vec::new();
+        let mut messages: Vec<Message> = Vec::new();
+        for (rank, piece) in (round..pieces.len()).enumerate().take(ranks.count()) {
+            let rows = view.snapshot_between([pieces[piece].begin(), ends[piece]]);
+            let rows = chosen(rows, bodies, content.every);
+            match rank == ranks.rank() {
+                true => parts.push(rows),
+                false if rows.number.is_empty() => {}
+                false => *message_to(&mut messages, rank) = bytes_of(&rows),
+            }
+        }
+        parts.extend(ranks.exchange(messages).iter().map(|(_, rows)| read::<ParticleSnapshot>(rows)));
+        let mut packed = (round + ranks.rank() < pieces.len())
+            .then(|| encode_piece(&ParticleSnapshot::merged(parts), *time, content));
+        let header = packed.as_ref().filter(|_| round == 0).map_or(0, |packed| packed.header(&sizes).len());
+        let file = file.get_or_insert_with(|| {
+            let start = read(&ranks.hear_first(&bytes_of(&(header as u64))));
+            JointFile::create(ranks, path, start)
+        });
+        let size = packed.as_ref().map(|packed| packed.sizes().swap_remove(0));
+        file.put(&packed.as_mut().map_or_else(Vec::new, |packed| packed.take_bytes()));
+        found.extend(gathered(ranks, &size).into_iter().flatten());
+        first = first.or(packed);
+    }
+    let header = first.filter(|_| ranks.rank() == 0).map_or_else(String::new, |first| first.header(&found));
+    file.expect("there is a piece").finish([header.as_bytes(), END], false)
+}
+
+/// Has ranks write the particles of a checkpoint as sections of a file that has nothing else yet. None of a simulation
+/// that nobody shares.
+///
+/// # Errors
+/// The disk of one of them is full or refuses.
+pub(super) fn write_sections(
+    view: &dyn View,
+    (path, form): (&Path, CheckpointForm),
+) -> Option<io::Result<Vec<Section>>> {
+    let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    ask(view, &Request::Sections(path, form == CheckpointForm::Compressed))
+}
+
+fn put_sections(
+    own: &dyn Simulation,
+    ranks: &dyn Ranks,
+    (path, form): (&Path, CheckpointForm),
+) -> Result<Vec<Section>, Trouble> {
+    let mut file = JointFile::create(ranks, path, START as u64);
+    let mut sections = Vec::new();
+    let own_count = own.particles().div_ceil(MOST_PARTICLES);
+    let rounds = combined(ranks, &own_count, usize::max);
+    own.save_shares(MOST_PARTICLES, &mut |shares| {
+        let (section, bytes) = Section::of(&shares, form);
+        sections.push(section.at(file.put(&bytes)));
+    });
+    for _ in sections.len()..rounds {
+        file.put(&[]);
+    }
+    let mut all = gathered(ranks, &sections).concat();
+    all.sort_by_key(Section::place);
+    file.finish([&super::checkpoint::first_line(), &[]], true).map(|_| all)
+}
+
+/// Has ranks take up a state, each some of its particles, which lie in sections of a file. None of a simulation that
+/// nobody shares.
+pub(super) fn restore(
+    simulation: &mut dyn Simulation,
+    rest: &SavedState,
+    (path, sections): (&Path, &[Section]),
+) -> Option<Result<(), RestoreError>> {
+    let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    simulation.restore_on_ranks(rest, &bytes_of(&(path, sections)))
+}
+
+fn find(ranks: &dyn Ranks, asked: &[u8], show: &mut dyn FnMut(Vec<SavedShare>)) -> Result<(), String> {
+    let (path, sections): (PathBuf, Vec<Section>) = read(asked);
+    let mut result = Ok(());
+    JointReading::open(ranks, &path).each_share(
+        sections.len(),
+        &|section, file| sections[section].bytes(file),
+        &mut |section, bytes| match sections[section].shares(&bytes) {
+            Ok(shares) => show(shares),
+            Err(problem) => result = Err(format!("cannot be read: {problem}")),
+        },
+    );
+    result
+}
