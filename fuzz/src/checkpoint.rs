@@ -3,10 +3,11 @@
 use crate::is_one_in;
 use crate::template::Template;
 use flate2::Compression;
+use flate2::bufread::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 use stickslip::door::View;
 use stickslip::march::March;
@@ -18,14 +19,14 @@ use stickslip::step::build;
 const HEAD: usize = 25;
 const SUM: usize = 32;
 const PLACE: usize = 8;
+const IS_PACKED: usize = 1;
 
 /// With one of so many outputs look whether they fit, which opens all files.
 const REMEMBERED: u64 = 20;
 
 /// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the first
 /// line of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed already or by
-/// us; or sections and head of version 3, to which the head's place and its sum are added: the four bytes before say how
-/// long sections are.
+/// us; or a section and a head of version 3, with all sums: the four bytes before say how long the section is.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();
@@ -33,11 +34,10 @@ pub fn run(bytes: &[u8]) {
         0 => content.to_vec(),
         4 => {
             let Some((length, content)) = content.split_first_chunk() else { return };
-            let sections = content.len().min(u32::from_le_bytes(*length) as usize);
-            let line = [&b"stickslip checkpoint\0"[..], &3_u32.to_le_bytes()].concat();
-            let place = ((HEAD + sections) as u64).to_le_bytes();
-            let sum = Sha256::digest([&line, &content[sections..], &place].concat());
-            [&line, content, &place, &sum[..]].concat()
+            let section = content.len().min(u32::from_le_bytes(*length) as usize);
+            let (section, head) = content.split_at(section);
+            let Some(whole) = Checkpoint::sealed(section, head) else { return };
+            whole
         }
         _ => {
             let mut whole = b"stickslip checkpoint\0".to_vec();
@@ -98,9 +98,15 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let template = Template::get();
     let newest = Checkpoint::list(&template.path()).unwrap_or_else(|error| panic!("{error}")).swap_remove(0);
     let bytes = std::fs::read(&newest).expect("it is there");
-    let (content, end) = bytes.split_at(bytes.len() - SUM - PLACE);
-    let place = u64::from_le_bytes(*end.first_chunk().expect("a place has eight bytes")) as usize;
-    let sectioned = [&((place - HEAD) as u32).to_le_bytes(), &content[HEAD..]].concat();
+    let (content, end) = bytes.split_at(bytes.len() - SUM - PLACE - IS_PACKED);
+    let place = u64::from_le_bytes(*end[1..].first_chunk().expect("a place has eight bytes")) as usize;
+    // As they were before they were packed.
+    let [section, head] = [&content[HEAD..place], &content[place..]].map(|packed| {
+        let mut plain = Vec::new();
+        ZlibDecoder::new(packed).read_to_end(&mut plain).expect("it was packed");
+        plain
+    });
+    let sectioned = [&(section.len() as u32).to_le_bytes(), &section[..], &head].concat();
     // As versions 1 and 2 have it.
     let whole = Checkpoint::read(&newest).expect("it is sound");
     let mut plain = Vec::new();

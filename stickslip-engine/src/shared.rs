@@ -10,15 +10,16 @@ use crate::column::ColumnDescription;
 use crate::contact::ContactSums;
 use crate::door::{
     BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
-    ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError, SavedShare,
-    SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError, WrittenValues,
+    NotTakenUp, ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError,
+    SavedShare, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
+    WrittenValues,
 };
 use crate::lanes::Processor;
 use crate::particles::by_number;
 use crate::ranks::{Ranks, Threads, all_of, bytes_of, combined, read};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
-use crate::step::{self, ParticleLoop};
+use crate::step::{self, ParticleLoop, Shareable};
 use rayon::ThreadPoolBuilder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -138,7 +139,7 @@ enum Call {
 /// One rank's part of a simulation. All ranks make the same calls of it in the same order, and the first gets what they
 /// give together.
 struct Part {
-    own: Box<dyn Simulation>,
+    own: Box<dyn Shareable>,
     scene: Scene,
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
@@ -159,7 +160,7 @@ impl Part {
         path: ParticleLoop,
         (ranks, program): (Arc<dyn Ranks>, Program),
     ) -> Result<Self, Problem> {
-        let own = step::build_among(scene, path, ranks.clone())?;
+        let own = step::build_share(scene, path, ranks.clone())?;
         Ok(Part { own, scene: scene.clone(), path, ranks, program })
     }
 
@@ -352,12 +353,13 @@ impl Part {
         self.ranks.tell_first(&said)
     }
 
-    fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Result<(), RestoreError> {
-        let (ranks, find) = (self.ranks.clone(), self.program.find);
-        let mut find = |show: &mut dyn FnMut(Vec<SavedShare>)| find(&*ranks, asked, show);
-        let of_all = self.ranks.clone();
-        self.own = step::build_among_saved(&self.scene, self.path, of_all, (rest, &mut find))?;
-        Ok(())
+    fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Result<(), NotTakenUp> {
+        let empty = step::build_empty(&self.scene, self.path);
+        // What it began with goes first.
+        self.own = empty.map_err(|problem| RestoreError::new(problem.to_string()))?;
+        let (ranks, find) = (&*self.ranks, self.program.find);
+        let mut find = |show: &mut dyn FnMut(Vec<SavedShare>)| find(ranks, asked, show);
+        self.own.take_up_share((&self.scene, self.ranks.clone()), rest, &mut find)
     }
 
     /// Begins with another state, which the whole simulation takes up before it is shared.
@@ -556,7 +558,7 @@ impl Simulation for Leader {
         part.begin_anew(|whole| whole.restore(state))
     }
 
-    fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Option<Result<(), RestoreError>> {
+    fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Option<Result<(), NotTakenUp>> {
         let part = self.tell_mut(&Call::RestoreOnRanks(asked.to_vec()));
         part.ranks.hear_first(&named_bytes_of(rest));
         Some(part.restore_on_ranks(rest, asked))

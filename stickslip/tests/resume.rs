@@ -1000,6 +1000,22 @@ fn a_run_of_version_1_goes_on_and_scenes_begin_from_it() {
     start(&scene, &next).unwrap();
 }
 
+/// A finished run of the same scene left `version_2`, with this sum of its last state.
+#[test]
+fn a_checkpoint_of_version_2_is_taken_up() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_2/0000001000.checkpoint");
+    assert_eq!(fs::read(&path).unwrap()[21..25], [2, 0, 0, 0]);
+    let checkpoint = Checkpoint::read(&path).unwrap();
+    let sum = "fb118195e7ef351e4443f4d44a4ea1536fd1cff8e8986314cc4c44860e2acbcb";
+    assert_eq!(stickslip::observe::state_sum(&checkpoint.state), sum);
+    let scene = scene(include_str!("version_1/scene.toml"));
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    checkpoint.restore(&path, &mut *simulation).unwrap().unwrap();
+    assert_eq!(simulation.steps(), 1000);
+    assert_eq!(stickslip::observe::present_state_sum(&scene, &*simulation).unwrap(), sum);
+    simulation.step(f64::INFINITY).unwrap();
+}
+
 fn copy_all(from: &Path, to: &Path) {
     fs::create_dir(to).unwrap();
     for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {

@@ -481,6 +481,83 @@ fn a_run_goes_on_with_another_number_of_ranks() {
     }
 }
 
+/// Snapshots in several pieces, of all particles and of some, and a checkpoint in several sections of each rank, which
+/// another number of ranks takes up.
+#[test]
+fn ranks_share_files_of_many_particles() {
+    let text = |snapshots: &str| {
+        let body = |name: &str, x: f64, side: f64| {
+            format!(
+                "[[bodies]]\nname = {name:?}\nmaterial = \"gel\"\nvelocity = [1, 2]\n\
+                 shape.box = {{ min = [{x}, 0], max = [{}, {side}] }}\n",
+                x + side
+            )
+        };
+        let bodies = [body("first", 0.0, 14.0), body("middle", 20.0, 14.0), body("last", 40.0, 6.0)].concat();
+        format!(
+            "space = {{ dimension = \"plane-strain\", cell = 0.1 }}\ntime = {{ end = 0.02 }}\n\
+             materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e4, poisson_ratio = 0.3 }} }}\n\
+             outputs = {{ particles = 0.01, snapshots = {{ {snapshots} }} }}\n{bodies}"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    for (i, snapshots) in
+        ["", "every = 3, bodies = [\"first\", \"last\"], compression = \"none\""].into_iter().enumerate()
+    {
+        let scene = scene(folder.path(), &text(snapshots));
+        let [alone, shared] = ["alone", "shared"].map(|name| folder.path().join(format!("{name} {i}")));
+        let expected = start(&scene, 1, &alone);
+        assert!(expected.performance.particles > 170_000 && expected.performance.steps > 2, "{expected}");
+        let first = fs::read(alone.join("particles/00001.vtu")).unwrap();
+        let pieces = String::from_utf8_lossy(&first).matches("<Piece ").count();
+        assert_eq!(pieces, [3, 1][i], "{snapshots}");
+        let options = options(&shared);
+        among(&scene, 3, |simulation| {
+            let mut stop = StopAfter(2, options.clone());
+            let stopped = run_with(&scene, simulation, &options, &mut [&mut stop], &mut |_| {}).unwrap();
+            assert_eq!(stopped.status, Status::Interrupted);
+        });
+        among(&scene, 2, |simulation| resume(&scene, simulation, &options, &mut |_| {}).unwrap());
+        assert_same_run(&alone, &shared);
+    }
+}
+
+/// A checkpoint whose shares fit the head but not each other is refused by ranks as by one.
+#[test]
+fn ranks_refuse_what_one_refuses() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), PLANE);
+    let refused = |count: usize, damage: &(dyn Fn(&mut stickslip::door::SavedState) + Sync)| -> String {
+        let mut simulation = stickslip::step::build(&scene).unwrap();
+        simulation.step(f64::INFINITY).unwrap();
+        let mut state = simulation.save().unwrap();
+        damage(&mut state);
+        let path = folder.path().join("0000000001.checkpoint");
+        let memory = stickslip::observe::Memory::keeping(&path);
+        let checkpoint = Checkpoint::new(&stickslip::observe::Manifest::record(&scene), state, memory);
+        checkpoint.write(&path, stickslip::observe::CheckpointForm::Plain).unwrap();
+        let take_up = |simulation: &mut dyn Simulation| {
+            let restored = Checkpoint::open(&path).unwrap().restore(&path, simulation);
+            restored.unwrap().unwrap_err().to_string()
+        };
+        match count {
+            1 => take_up(&mut *stickslip::step::build(&scene).unwrap()),
+            count => among(&scene, count, take_up),
+        }
+    };
+    for count in 1..=2 {
+        let twice = refused(count, &|state| state.bodies[0].numbers[1] = state.bodies[0].numbers[0]);
+        assert!(twice.contains("numbered twice"), "{twice}");
+        let moved = refused(count, &|state| {
+            let column = state.bodies[0].columns.iter_mut().find(|column| column.name == "start").unwrap();
+            column.bytes[3] ^= 1;
+        });
+        assert!(moved.contains("began elsewhere"), "{moved}");
+        let lacks = refused(count, &|state| drop(state.bodies[0].columns.pop()));
+        assert!(lacks.contains("other columns"), "{lacks}");
+    }
+}
+
 /// From a checkpoint, and from a snapshot.
 #[test]
 fn ranks_begin_from_another_run() {

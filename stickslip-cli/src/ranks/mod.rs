@@ -2,7 +2,7 @@
 //!
 //! All of them are this program with the same words. The first does what these ask for. The others wait for the scenes
 //! that it simulates, read each for themselves, and have their part of the simulation ([`stickslip::shared`]): they
-//! write nothing, and say nothing but what is wrong with them.
+//! write their pieces of files of particles, and say nothing but what is wrong with them.
 
 #[cfg(feature = "mpi")]
 mod mpi;

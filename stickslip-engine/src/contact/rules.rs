@@ -90,6 +90,12 @@ impl<T: Real> Rules<T> {
         self.rules.iter().any(judges)
     }
 
+    /// Whether all laws look at nothing of particles but places, shapes and volumes.
+    pub fn judge_by_place(&self) -> bool {
+        let by_place = |rule: &Rule<T>| rule.law == ContactLaw::None || law::<T, 3>(rule.law).by_place();
+        self.rules.iter().all(by_place)
+    }
+
     /// A rule by its number.
     pub fn rule(&self, number: usize) -> &Rule<T> {
         &self.rules[number]

@@ -10,7 +10,7 @@ mod snapshot;
 pub use crate::particles::{ColumnPlace, NumberFormat};
 pub use column::{ColumnRef, NoColumn, WRITABLE, WriteError};
 pub(crate) use saved::SavedUnbounded;
-pub use saved::{RestoreError, SavedBody, SavedColumn, SavedShare, SavedState};
+pub use saved::{NotTakenUp, RestoreError, SavedBody, SavedColumn, SavedShare, SavedState};
 pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 
 use crate::column::ColumnDescription;
@@ -78,9 +78,10 @@ pub trait View {
     }
     /// All particles now, ordered by body and then by the particle's number in its body.
     fn snapshot(&self) -> ParticleSnapshot;
-    /// Of these the particles from a body and a number in it up to, not with, another.
-    fn snapshot_between(&self, ends: [(u32, u32); 2]) -> ParticleSnapshot {
-        self.snapshot().only(|body, number| (ends[0]..ends[1]).contains(&(body, number)))
+    /// Of these some particles, from a body and a number in it up to, not with, another.
+    fn snapshot_between(&self, ends: [(u32, u32); 2], wanted: &dyn Fn(u32, u32) -> bool) -> ParticleSnapshot {
+        let inside = |body, number| (ends[0]..ends[1]).contains(&(body, number)) && wanted(body, number);
+        self.snapshot().only(inside)
     }
     /// Shows every particle of a body to `look`, in no order that means anything.
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
@@ -89,6 +90,7 @@ pub trait View {
             look(&ParticleView {
                 number: all.number[i],
                 mass: all.mass[i],
+                volume: all.volume[i],
                 position: all.position[i],
                 velocity: all.velocity[i],
                 stress: all.stress[i],
@@ -238,7 +240,7 @@ pub trait Simulation: View + Send {
     ///
     /// # Errors
     /// It is the state of another scene, or a rank does not find its share; then the simulation has no particles.
-    fn restore_on_ranks(&mut self, _rest: &SavedState, _asked: &[u8]) -> Option<Result<(), RestoreError>> {
+    fn restore_on_ranks(&mut self, _rest: &SavedState, _asked: &[u8]) -> Option<Result<(), NotTakenUp>> {
         None
     }
 }
@@ -561,6 +563,8 @@ pub struct ParticleView {
     pub number: u32,
     /// Mass [kg].
     pub mass: f64,
+    /// Volume now [m^3].
+    pub volume: f64,
     /// Position [m].
     pub position: [f64; 3],
     /// Velocity [m/s].

@@ -295,9 +295,20 @@ pub(crate) struct SavedUnbounded {
 }
 
 /// A state that belongs to another scene than the simulation that should take it up.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{0}")]
 pub struct RestoreError(pub(crate) String);
+
+/// Why ranks do not take up a state.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+pub enum NotTakenUp {
+    /// One of them does not find its share of the particles.
+    #[error("{0}")]
+    Unfound(String),
+    /// It belongs to another scene.
+    #[error(transparent)]
+    Other(#[from] RestoreError),
+}
 
 impl RestoreError {
     /// One that says so.

@@ -4,7 +4,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
-pub use rows::{fill_holes, number_of, write_number};
+pub use rows::{Shown, fill_holes, number_of, write_number};
 
 use crate::body::Particle;
 use crate::column::{ColumnDescription, EVERY, HALF_EDGES, Kind, NUMBER, same};

@@ -32,6 +32,15 @@ pub fn number_of<T: Real>(bytes: &[u8]) -> T {
     }
 }
 
+/// What other ranks see of particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// Where they are and were, and their shape and volume.
+    Places,
+    /// Mass and stress, too.
+    Everything,
+}
+
 impl<T: Real, const D: usize> Particles<T, D> {
     /// Bytes of so many particles.
     pub fn message_bytes(&self, count: usize) -> usize {
@@ -39,8 +48,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
     }
 
     /// Bytes of so many guests.
-    pub fn bytes_of_guests(&self, count: usize) -> usize {
-        count * (size_of::<u32>() + self.shown_to_others().count() * size_of::<T>())
+    pub fn bytes_of_guests(&self, count: usize, shown: Shown) -> usize {
+        count * (size_of::<u32>() + self.shown_to_others(shown).count() * size_of::<T>())
     }
 
     /// Writes particles behind a message.
@@ -48,15 +57,21 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.write_entries(particles, 0..self.entries(), message);
     }
 
-    /// Writes particles behind a message as they are shown to others: where they are, and their shape, mass and stress.
-    pub fn write_guests(&self, particles: &[u32], message: &mut Vec<u8>) {
-        self.write_entries(particles, self.shown_to_others(), message);
+    /// Writes particles behind a message as they are shown to others.
+    pub fn write_guests(&self, particles: &[u32], shown: Shown, message: &mut Vec<u8>) {
+        self.write_entries(particles, self.shown_to_others(shown), message);
     }
 
     /// The entries of particles that contact looks at.
-    fn shown_to_others(&self) -> impl Iterator<Item = usize> {
+    fn shown_to_others(&self, shown: Shown) -> impl Iterator<Item = usize> {
+        type Start<const D: usize> = ColumnStart<D>;
+        let of_motion = Start::<D>::VELOCITY..Start::<D>::MASS;
+        let of_force = |entry: usize| {
+            entry == Start::<D>::MASS || (Start::<D>::STRESS..Start::<D>::START).contains(&entry)
+        };
         let of_all = (0..ColumnStart::<D>::COUNT)
-            .filter(|entry| !(ColumnStart::<D>::VELOCITY..ColumnStart::<D>::MASS).contains(entry));
+            .filter(move |&entry| !of_motion.contains(&entry))
+            .filter(move |&entry| shown == Shown::Everything || !of_force(entry));
         of_all.chain(self.view().domain_columns())
     }
 
@@ -107,8 +122,8 @@ impl<T: Real, const D: usize> Particles<T, D> {
     }
 
     /// Puts particles behind those that are there and their guests, as more guests.
-    pub fn receive_guests(&mut self, bytes: &[u8], count: usize) {
-        let entries: Vec<usize> = self.shown_to_others().collect();
+    pub fn receive_guests(&mut self, bytes: &[u8], count: usize, shown: Shown) {
+        let entries: Vec<usize> = self.shown_to_others(shown).collect();
         self.read_entries(bytes, (self.len + self.guests, count), entries.into_iter());
         self.guests += count;
     }

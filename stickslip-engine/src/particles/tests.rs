@@ -281,9 +281,9 @@ proptest! {
             }
             let mut visiting = Vec::new();
             let visitors: Vec<u32> = (0..here.len().min(guests) as u32).collect();
-            here.write_guests(&visitors, &mut visiting);
-            prop_assert_eq!(visiting.len(), here.bytes_of_guests(visitors.len()));
-            there.receive_guests(&visiting, visitors.len());
+            here.write_guests(&visitors, Shown::Everything, &mut visiting);
+            prop_assert_eq!(visiting.len(), here.bytes_of_guests(visitors.len(), Shown::Everything));
+            there.receive_guests(&visiting, visitors.len(), Shown::Everything);
             for (particles, wanted) in [(&here, &left), (&there, &gone)] {
                 let mut numbers = particles.numbers().to_vec();
                 numbers.sort_unstable();

@@ -14,7 +14,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::{RemovedParticles, RestoreError, SavedState, Simulation, WrittenValues};
+use crate::door::{NotTakenUp, RemovedParticles, RestoreError, SavedState, Simulation, WrittenValues};
 use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill, sites};
 use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress::{self, InitialStress};
@@ -63,8 +63,17 @@ pub fn build_among(
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
 ) -> Result<Box<dyn Simulation>, Problem> {
+    Ok(build_share(scene, path, ranks)?)
+}
+
+/// The same.
+pub(crate) fn build_share(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: Arc<dyn Ranks>,
+) -> Result<Box<dyn Shareable>, Problem> {
     super::among::can_be_shared(scene)?;
-    Ok(build_for(scene, path, Keeping::Share(ranks))?)
+    build_for(scene, path, Keeping::Share(ranks))
 }
 
 /// [`build_among`], of a whole that begins in another way than the scene says.
@@ -76,7 +85,7 @@ pub(crate) fn build_among_from(
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
     begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
-) -> Result<Box<dyn Simulation>, RestoreError> {
+) -> Result<Box<dyn Shareable>, RestoreError> {
     let mut whole =
         build_for(scene, path, Keeping::All).map_err(|problem| RestoreError(problem.to_string()))?;
     begin(&mut *whole)?;
@@ -84,20 +93,12 @@ pub(crate) fn build_among_from(
     Ok(whole)
 }
 
-/// [`build_among`], of a saved state: without particles, of which `find` gives each rank some.
+/// A simulation without particles, which can [take up](Shareable::take_up_share) those of a saved state.
 ///
 /// # Errors
-/// It is of another scene, or a rank does not find its particles: all ranks say so.
-pub(crate) fn build_among_saved(
-    scene: &Scene,
-    path: ParticleLoop,
-    ranks: Arc<dyn Ranks>,
-    (rest, find): (&SavedState, Find),
-) -> Result<Box<dyn Simulation>, RestoreError> {
-    let mut empty =
-        build_for(scene, path, Keeping::None).map_err(|problem| RestoreError(problem.to_string()))?;
-    empty.take_up_share((scene, ranks), rest, find)?;
-    Ok(empty)
+/// What [`check::problems`] finds.
+pub(crate) fn build_empty(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Shareable>, Problem> {
+    build_for(scene, path, Keeping::None)
 }
 
 /// Which particles of a scene a simulation begins with.
@@ -109,20 +110,20 @@ enum Keeping {
 }
 
 /// A simulation that ranks can share.
-trait Shareable: Simulation {
+pub(crate) trait Shareable: Simulation {
     /// Keeps this rank's part.
     fn share(&mut self, ranks: Arc<dyn Ranks>);
 
     /// Takes up this rank's share of a saved state, with no particles before.
     ///
     /// # Errors
-    /// As [`build_among_saved`].
+    /// It is of another scene, or a rank does not find its particles: all ranks say so.
     fn take_up_share(
         &mut self,
         of: (&Scene, Arc<dyn Ranks>),
         rest: &SavedState,
         find: Find,
-    ) -> Result<(), RestoreError>;
+    ) -> Result<(), NotTakenUp>;
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
@@ -135,7 +136,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
         of: (&Scene, Arc<dyn Ranks>),
         rest: &SavedState,
         find: Find,
-    ) -> Result<(), RestoreError> {
+    ) -> Result<(), NotTakenUp> {
         self.take_up_among(of, rest, find)
     }
 }

@@ -53,8 +53,8 @@ mod walls;
 mod watch;
 mod writing;
 
+pub(crate) use build::{Shareable, build_among_from, build_empty, build_share};
 pub use build::{build, build_among, build_on};
-pub(crate) use build::{build_among_from, build_among_saved};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
 pub use pass::ParticleLoop;

@@ -294,7 +294,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn detect_contact(&mut self, ahead: Option<T>) {
         let mut start = Instant::now();
         if self.among.is_some() {
-            self.invite_guests();
+            self.invite_guests(self.guests_show(ahead.is_some()));
             self.watch.lap("guests", start);
             start = Instant::now();
         }

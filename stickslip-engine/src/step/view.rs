@@ -40,6 +40,7 @@ fn shown<T: Real, const D: usize>(particle: &Particle<T, D>) -> ParticleView {
     ParticleView {
         number: particle.number,
         mass: particle.mass.f64(),
+        volume: particle.volume.f64(),
         position: particle.position.space(),
         velocity: particle.velocity.space(),
         stress: particle.stress.0.map(Real::f64),
@@ -66,12 +67,16 @@ impl<'a, T: Laned, const D: usize> SnapshotRows<'a, T, D> {
     }
 
     /// From a body and a number up to another.
-    fn between(bodies: &'a [Body<T, D>], [from, to]: [(u32, u32); 2]) -> Self {
+    fn between(
+        bodies: &'a [Body<T, D>],
+        [from, to]: [(u32, u32); 2],
+        wanted: &dyn Fn(u32, u32) -> bool,
+    ) -> Self {
         let mut places = Vec::new();
         for (body, i) in bodies.iter().zip(0..).take(to.0 as usize + 1).skip(from.0 as usize) {
             let numbers = body.particles.numbers();
             let first = places.len();
-            let inside = |number: u32| from <= (i, number) && (i, number) < to;
+            let inside = |number: u32| from <= (i, number) && (i, number) < to && wanted(i, number);
             places.extend(
                 numbers.iter().zip(0..).filter(|(number, _)| inside(**number)).map(|(_, place)| [i, place]),
             );
@@ -337,8 +342,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         self.snapshot_of(&SnapshotRows::of(&self.state.bodies))
     }
 
-    fn snapshot_between(&self, ends: [(u32, u32); 2]) -> ParticleSnapshot {
-        self.snapshot_of(&SnapshotRows::between(&self.state.bodies, ends))
+    fn snapshot_between(&self, ends: [(u32, u32); 2], wanted: &dyn Fn(u32, u32) -> bool) -> ParticleSnapshot {
+        self.snapshot_of(&SnapshotRows::between(&self.state.bodies, ends, wanted))
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {

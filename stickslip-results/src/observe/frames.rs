@@ -128,7 +128,8 @@ impl Frames {
     ) -> Result<(), OutputError> {
         let path = self.writer.ask(move |series| Ok(series.next_path(time)))?;
         let part = part_of(&path);
-        let written = write(&part).and_then(|sum| fs::rename(&part, &path).map(|()| sum));
+        let written = self.writer.waiting().watch(&path, || write(&part));
+        let written = written.and_then(|sum| fs::rename(&part, &path).map(|()| sum));
         let sum = written.map_err(|source| {
             // As of any file that is replaced.
             let _ = fs::remove_file(&part);

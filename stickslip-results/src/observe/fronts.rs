@@ -243,6 +243,7 @@ mod tests {
         ParticleView {
             number: 0,
             mass: 1.0,
+            volume: 1.0,
             position,
             velocity: [0.0; 3],
             stress: [stress, 0.0, 0.0, 0.0, 0.0, 0.0],

@@ -13,7 +13,6 @@ use crate::column::{ColumnDescription, DERIVED, IDENTITY, Kind, every, in_files}
 use crate::door::{ColumnSource, ParticleSnapshot, SnapshotColumn, View};
 use crate::scene::{Scene, SeriesFormat, SnapshotContent};
 use std::collections::BTreeMap;
-use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -49,7 +48,7 @@ impl Observer for ParticlesObserver {
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
         let content = self.content.clone();
-        if view.shares().len() > 1 {
+        if !view.shares().is_empty() {
             self.frames.put(time, |path| {
                 let request = ParticlesRequest {
                     path: path.to_path_buf(),
@@ -57,7 +56,7 @@ impl Observer for ParticlesObserver {
                     content: SnapshotContent::clone(&content),
                     bodies: self.bodies.clone(),
                 };
-                write_particles(view, request).unwrap_or_else(|| Err(io::ErrorKind::Unsupported.into()))
+                write_particles(view, request)
             })?;
             self.schedule.recorded(time);
             return Ok(());
@@ -88,7 +87,12 @@ pub(super) fn chosen(snapshot: ParticleSnapshot, bodies: &[bool], every: usize) 
     if every == 1 && bodies.iter().all(|wanted| *wanted) {
         return snapshot;
     }
-    snapshot.only(|body, number| bodies[body as usize] && (number as usize).is_multiple_of(every))
+    snapshot.only(|body, number| is_chosen((bodies, every), (body, number)))
+}
+
+/// Whether a particle is one of these.
+pub(super) fn is_chosen((bodies, every): (&[bool], usize), (body, number): (u32, u32)) -> bool {
+    bodies[body as usize] && (number as usize).is_multiple_of(every)
 }
 
 /// A body, and which of so many of its numbers.
@@ -139,7 +143,7 @@ pub(super) fn cut(counts: &BTreeMap<Stretch, usize>) -> Vec<PieceStart> {
     pieces
 }
 
-/// A snapshot at a time [s] as a file for ParaView, ready to be written: in pieces of some hundred thousand particles.
+/// A snapshot at a time [s] as a file for ParaView, ready to be written: in pieces of up to 65,536 particles.
 ///
 /// It holds the columns of the snapshot, and behind each those of [`DERIVED`] that follow from it; first vectors and
 /// tensors, then whose each particle is, then numbers, then history. What a reader cannot know, the units of history,

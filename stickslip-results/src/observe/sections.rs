@@ -4,10 +4,13 @@ use super::file::OutputError;
 use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::schedule::Schedule;
+use super::shared::{Asked, Question, answer};
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::{Observer, SECTIONS};
-use crate::door::{ParticleSnapshot, View};
+use crate::door::{ParticleView, View};
+use crate::exact::ExactSum;
 use crate::scene::{Domain, Scene, Section};
+use serde::{Deserialize, Serialize};
 use stickslip_scene::tensor::cross;
 
 /// Force and moment across a plane at one time, in SI units; the columns of `sections.csv`.
@@ -40,11 +43,7 @@ impl TableRow for SectionRow {
 
 /// Writes `sections.csv`.
 pub(super) struct SectionsObserver {
-    /// With the indices of the bodies that each cuts.
-    sections: Vec<(Section, Vec<bool>)>,
-    cell: f64,
-    /// Where images of particles are, if the domain is periodic.
-    domain: Option<Domain>,
+    sections: Vec<SectionCut>,
     schedule: Schedule,
     table: CsvTable<SectionRow>,
 }
@@ -52,14 +51,18 @@ pub(super) struct SectionsObserver {
 impl SectionsObserver {
     pub(super) fn create(scene: &Scene, folder: &OutputFolder) -> Result<Self, OutputError> {
         let measurements = &scene.outputs.measurements;
-        let cuts = |section: &Section| {
-            let cut = |body: &crate::scene::Body| section.bodies.contains(&body.name);
-            (section.clone(), scene.bodies.iter().map(cut).collect())
+        let domain = scene.domain.clone().filter(|domain| domain.periods() != [0.0; 3]);
+        let cut = |section: &Section| SectionCut {
+            section: section.clone(),
+            bodies: (0..scene.bodies.len())
+                .filter(|&i| section.bodies.contains(&scene.bodies[i].name))
+                .collect(),
+            cell: scene.discretization.cell,
+            axes: scene.dimension.axes(),
+            domain: domain.clone(),
         };
         Ok(SectionsObserver {
-            sections: measurements.sections.iter().map(cuts).collect(),
-            cell: scene.discretization.cell,
-            domain: scene.domain.clone().filter(|domain| domain.periods() != [0.0; 3]),
+            sections: measurements.sections.iter().map(cut).collect(),
             schedule: Schedule::every(scene.outputs.tables),
             table: CsvTable::create(folder, SECTIONS, measurements.unit())?,
         })
@@ -72,18 +75,12 @@ impl Observer for SectionsObserver {
     }
 
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
-        let (time, mut particles) = (view.time(), view.snapshot());
-        let places = particles.position.clone();
-        let rows = self.sections.iter().map(|(section, cuts)| {
-            if let Some(domain) = &self.domain {
-                let middle = section
-                    .within
-                    .map_or(section.point, |[min, max]| std::array::from_fn(|k| 0.5 * (min[k] + max[k])));
-                let near = |place: &[f64; 3]| domain.image_near(*place, middle);
-                particles.position = places.iter().map(near).collect();
-            }
-            let [force, moment, [area, ..]] = across(section, cuts, &particles, self.cell);
-            SectionRow { time, section: section.name.clone(), force, moment, area }
+        let time = view.time();
+        let rows = self.sections.iter().map(|cut| {
+            let sums = answer(view, cut);
+            let [fx, fy, fz, mx, my, mz, area] = sums.each_ref().map(ExactSum::value);
+            let section = cut.section.name.clone();
+            SectionRow { time, section, force: [fx, fy, fz], moment: [mx, my, mz], area }
         });
         self.table.append(rows)?;
         self.schedule.recorded(time);
@@ -100,35 +97,67 @@ impl Observer for SectionsObserver {
     }
 }
 
-/// Force, moment and area of a section.
-fn across(section: &Section, cuts: &[bool], particles: &ParticleSnapshot, cell: f64) -> [[f64; 3]; 3] {
-    let Section { point, normal: n, within, .. } = section;
-    let (mut force, mut moment, mut area) = ([0.0; 3], [0.0; 3], 0.0);
-    for i in 0..particles.body.len() {
-        if !cuts[particles.body[i] as usize] {
-            continue;
-        }
-        let x = particles.position[i];
+/// A section through the bodies of a scene.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct SectionCut {
+    section: Section,
+    /// Indices of the bodies that it cuts.
+    bodies: Vec<usize>,
+    cell: f64,
+    /// Of the scene.
+    axes: usize,
+    /// Where images of particles are, if the domain is periodic.
+    domain: Option<Domain>,
+}
+
+impl SectionCut {
+    /// What a particle adds to force, moment and area; nothing if it is not near.
+    fn share(&self, particle: &ParticleView) -> Option<[f64; 7]> {
+        let Section { point, normal: n, within, .. } = &self.section;
+        let x = self.domain.as_ref().map_or(particle.position, |domain| {
+            let middle = within.map_or(*point, |[min, max]| std::array::from_fn(|k| 0.5 * (min[k] + max[k])));
+            domain.image_near(particle.position, middle)
+        });
         let from: [f64; 3] = std::array::from_fn(|k| x[k] - point[k]);
         let away = (0..3).map(|k| from[k] * n[k]).sum::<f64>().abs();
-        let inside = within
-            .is_none_or(|[min, max]| (0..particles.dimension).all(|k| (min[k]..=max[k]).contains(&x[k])));
-        if away >= cell || !inside {
-            continue;
+        let inside =
+            within.is_none_or(|[min, max]| (0..self.axes).all(|k| (min[k]..=max[k]).contains(&x[k])));
+        if away >= self.cell || !inside {
+            return None;
         }
-        let share = particles.volume[i] * (1.0 - away / cell) / cell;
-        let [xx, yy, zz, xy, yz, xz] = particles.stress[i];
+        let share = particle.volume * (1.0 - away / self.cell) / self.cell;
+        let [xx, yy, zz, xy, yz, xz] = particle.stress;
         let traction = [
             xx * n[0] + xy * n[1] + xz * n[2],
             xy * n[0] + yy * n[1] + yz * n[2],
             xz * n[0] + yz * n[1] + zz * n[2],
         ];
-        let turn = cross(from, traction);
-        for k in 0..3 {
-            force[k] += share * traction[k];
-            moment[k] += share * turn[k];
-        }
-        area += share;
+        let ([fx, fy, fz], [mx, my, mz]) = (traction, cross(from, traction));
+        Some([fx, fy, fz, mx, my, mz, 1.0].map(|x| share * x))
     }
-    [force, moment, [area, 0.0, 0.0]]
+}
+
+impl Question for SectionCut {
+    /// Force, moment and area.
+    type Answer = [ExactSum; 7];
+
+    fn look(&self, view: &dyn View) -> Self::Answer {
+        let mut sums = [0; 7].map(|_| ExactSum::default());
+        for &body in &self.bodies {
+            view.visit(body, &mut |particle| {
+                let share = self.share(particle).into_iter().flatten();
+                sums.iter_mut().zip(share).for_each(|(sum, x)| sum.add(x));
+            });
+        }
+        sums
+    }
+
+    fn join(mut one: Self::Answer, other: Self::Answer) -> Self::Answer {
+        one.iter_mut().zip(&other).for_each(|(sum, other)| sum.merge(other));
+        one
+    }
+
+    fn asked(&self) -> Asked {
+        Asked::Section(self.clone())
+    }
 }

@@ -5,6 +5,7 @@ use super::folder::OutputFolder;
 use super::frames::{FrameFile, Frames};
 use super::memory::Memory;
 use super::schedule::Schedule;
+use super::shared::{Asked, Question, answer};
 use super::vtk::{NUMBER, VECTOR, VtkFile};
 use super::{Observer, SURFACES};
 use crate::column::DERIVED;
@@ -16,7 +17,9 @@ use crate::surface::model::{Model, ModelPart, upright};
 use crate::surface::{self, CarriedSkin, Skin};
 use crate::tensor::{Vector, cross};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Writes `surfaces.pvd` or `surfaces.csv`, and `surfaces/`.
@@ -50,8 +53,8 @@ struct Surface {
 enum Moved {
     /// With the pose of a rigid body.
     Rigidly(Skin),
-    /// With the particles of one that deforms.
-    ByParticles(CarriedSkin),
+    /// With the particles of one that deforms, of these numbers.
+    ByParticles(CarriedSkin, Vec<u32>),
 }
 
 /// The surfaces at one time.
@@ -86,7 +89,9 @@ impl Observer for SurfacesObserver {
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
         self.frames.make_room()?;
-        let (snapshot, poses) = (view.snapshot(), view.poses());
+        let lost = view.removed();
+        let has_lost = |body: usize| lost.get(body).is_some_and(|lost| lost.count > 0);
+        let (snapshot, poses) = (answer(view, &Carriers::of(&self.surfaces, has_lost)), view.poses());
         let spins: Vec<[[f64; 3]; 2]> = view.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
         let corners = self.surfaces.iter().map(|surface| surface.moved.skin().corners.len()).sum::<usize>();
         let (surfaces, labels) = (self.surfaces.clone(), self.labels.clone());
@@ -135,7 +140,8 @@ fn surfaces_of(scene: &Scene) -> Vec<Surface> {
         let skin = Skin::of(&body.shape, lattice.spacing, dimension, domain)?;
         let reference = sites(&body.shape, &lattice, body.particles)?.map(|site| site.position).collect();
         let carried = CarriedSkin::new(skin, reference, lattice.spacing);
-        Some(Surface { body: number, moved: Moved::ByParticles(carried) })
+        let (carried, carriers) = carried.thinned();
+        Some(Surface { body: number, moved: Moved::ByParticles(carried, carriers) })
     };
     let held = scene.outputs.snapshots.held(&scene.bodies);
     (0..scene.bodies.len()).into_par_iter().filter(|&body| held[body]).filter_map(surface).collect()
@@ -145,13 +151,50 @@ impl Moved {
     fn skin(&self) -> &Skin {
         match self {
             Moved::Rigidly(skin) => skin,
-            Moved::ByParticles(carried) => carried.skin(),
+            Moved::ByParticles(carried, _) => carried.skin(),
         }
     }
 }
 
-/// Each surface as it is now: of rigid bodies by their poses, velocities and spins, of others by their particles. Bodies
-/// that lost particles have none any more.
+/// The particles that carry surfaces.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Carriers(BTreeMap<u32, Vec<u32>>);
+
+impl Carriers {
+    /// By body, those of surfaces whose bodies have lost none.
+    fn of(surfaces: &[Surface], has_lost: impl Fn(usize) -> bool) -> Self {
+        let carriers = surfaces.iter().filter(|surface| !has_lost(surface.body)).filter_map(|surface| {
+            match &surface.moved {
+                Moved::Rigidly(_) => None,
+                Moved::ByParticles(_, carriers) => Some((surface.body as u32, carriers.clone())),
+            }
+        });
+        Carriers(carriers.collect())
+    }
+}
+
+impl Question for Carriers {
+    /// Those particles, without what laws remember.
+    type Answer = ParticleSnapshot;
+
+    fn look(&self, view: &dyn View) -> ParticleSnapshot {
+        let wanted = |body: u32, number: u32| {
+            self.0.get(&body).is_some_and(|carriers| carriers.binary_search(&number).is_ok())
+        };
+        ParticleSnapshot { history: Vec::new(), ..view.snapshot().only(wanted) }
+    }
+
+    fn join(one: ParticleSnapshot, other: ParticleSnapshot) -> ParticleSnapshot {
+        ParticleSnapshot::merged(vec![one, other])
+    }
+
+    fn asked(&self) -> Asked {
+        Asked::Carriers(self.clone())
+    }
+}
+
+/// Each surface as it is now: of rigid bodies by their poses, velocities and spins, of others by the particles that
+/// carry them, if all of these are there.
 fn corners_of(
     surfaces: &[Surface],
     snapshot: &ParticleSnapshot,
@@ -175,11 +218,11 @@ fn corners_of(
                     corners.von_mises.push(0.0);
                 }
             }
-            Moved::ByParticles(carried) => {
+            Moved::ByParticles(carried, carriers) => {
                 // Particles are in the order of bodies and numbers.
                 let first = snapshot.body.partition_point(|&other| (other as usize) < body);
                 let end = snapshot.body.partition_point(|&other| (other as usize) <= body);
-                if end - first != carried.particles() {
+                if end - first != carriers.len() {
                     return Corners::default();
                 }
                 let of = first..end;
@@ -339,7 +382,8 @@ mod tests {
         }
         let surfaces = surfaces_of(&scene);
         let motions: Vec<_> = simulation.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
-        let parts = corners_of(&surfaces, &simulation.snapshot(), (&simulation.poses(), &motions));
+        let carriers = Carriers::of(&surfaces, |_| false).look(&*simulation);
+        let parts = corners_of(&surfaces, &carriers, (&simulation.poses(), &motions));
         let corners = joined(parts.clone());
         let mut first = 0;
         for (surface, (center, velocity, spin, area)) in surfaces.iter().zip([
@@ -421,7 +465,8 @@ mod tests {
         let simulation = stickslip_engine::step::build(&scene).unwrap();
         let surfaces = surfaces_of(&scene);
         let (poses, motions) = (simulation.poses(), vec![[[0.0; 3]; 2]; 2]);
-        let whole = joined(corners_of(&surfaces, &simulation.snapshot(), (&poses, &motions)));
+        let carriers = |lost: usize| Carriers::of(&surfaces, |body| body == lost).look(&*simulation);
+        let whole = joined(corners_of(&surfaces, &carriers(usize::MAX), (&poses, &motions)));
         // The normals of the triangles look out of the ball.
         let ball = |triangle: &&[u32; 3]| whole.body[triangle[0] as usize] == 0;
         for triangle in whole.triangles.iter().filter(ball) {
@@ -433,8 +478,7 @@ mod tests {
         let mut one = scene.clone();
         one.outputs.snapshots.bodies = Some(vec!["cube".to_string()]);
         assert_eq!(surfaces_of(&one).iter().map(|surface| surface.body).collect::<Vec<_>>(), [1]);
-        let less = simulation.snapshot().only(|body, number| (body, number) != (0, 17));
-        let left = joined(corners_of(&surfaces, &less, (&poses, &motions)));
+        let left = joined(corners_of(&surfaces, &carriers(0), (&poses, &motions)));
         assert!(left.body.iter().all(|&body| body == 1) && !left.body.is_empty());
         assert!(left.triangles.iter().flatten().all(|&corner| (corner as usize) < left.position.len()));
     }

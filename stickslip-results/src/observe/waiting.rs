@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// How long a run waits where a disk takes nothing: it may come back, as those of a network do.
@@ -52,15 +53,37 @@ impl Waiting {
         Waiting { patience, stop, until, ..Waiting::default() }
     }
 
+    /// Writes a file or a folder by a thread that cannot be left, while another looks after the clock: the user is told
+    /// of a disk that takes nothing, but the run waits for it, whatever it is asked.
+    pub fn watch<X>(&self, path: &Path, write: impl FnOnce() -> X) -> X {
+        let (written, done) = channel::<()>();
+        let since = Instant::now();
+        std::thread::scope(|scope| {
+            scope.spawn(move || {
+                while done.recv_timeout(LOOK_UP) == Err(RecvTimeoutError::Timeout) {
+                    self.tell(path, since.elapsed());
+                }
+            });
+            let result = write();
+            drop(written);
+            result
+        })
+    }
+
+    /// Tells the user of a file or a folder that was waited for that long, once.
+    fn tell(&self, path: &Path, waited: Duration) {
+        if waited >= self.patience.told_after && !self.told.swap(true, Ordering::Relaxed) {
+            (self.patience.tell)(path, waited);
+        }
+    }
+
     /// Looks up from waiting for a file or a folder, into which nothing went since then.
     ///
     /// # Errors
     /// The run is to stop, and has waited long enough.
     pub(super) fn look_up(&self, path: &Path, since: Instant) -> Result<(), OutputError> {
         let waited = since.elapsed();
-        if waited >= self.patience.told_after && !self.told.swap(true, Ordering::Relaxed) {
-            (self.patience.tell)(path, waited);
-        }
+        self.tell(path, waited);
         let stops =
             self.stop.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() >= until);
         let longest = match self.given_up.load(Ordering::Relaxed) {

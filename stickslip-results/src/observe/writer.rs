@@ -61,6 +61,11 @@ impl<F: Send + 'static> Writer<F> {
         })
     }
 
+    /// How long it waits.
+    pub(super) fn waiting(&self) -> &Waiting {
+        &self.waiting
+    }
+
     /// Waits until there is room for another record.
     ///
     /// # Errors

@@ -63,14 +63,23 @@ impl CarriedSkin {
         CarriedSkin { skin, starts, ties, reference }
     }
 
+    /// The same tied to some of its particles only, as many as it takes, and their numbers, which ascend.
+    pub fn thinned(self) -> (Self, Vec<u32>) {
+        let mut carriers: Vec<u32> = self.ties.iter().map(|(particle, _)| *particle).collect();
+        carriers.sort_unstable();
+        carriers.dedup();
+        let place = |particle: u32| carriers.partition_point(|&other| other < particle) as u32;
+        let thinned = CarriedSkin {
+            ties: self.ties.iter().map(|&(particle, share)| (place(particle), share)).collect(),
+            reference: carriers.iter().map(|&particle| self.reference[particle as usize]).collect(),
+            ..self
+        };
+        (thinned, carriers)
+    }
+
     /// The skin at the start.
     pub fn skin(&self) -> &Skin {
         &self.skin
-    }
-
-    /// How many particles carry it.
-    pub fn particles(&self) -> usize {
-        self.reference.len()
     }
 
     /// The corners now [m], from the places [m] and the deformation gradients (row by row) of the particles.

@@ -189,14 +189,16 @@ impl Checkpoints {
                 *trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             }
         };
-        if simulation.shares().len() > 1 {
+        if !simulation.shares().is_empty() {
             // Ranks write together, and go on once they have.
             let Some(rest) = simulation.save_rest() else { return Ok(()) };
             let checkpoint = Checkpoint::new(&self.scene, rest, memory);
+            let write = || checkpoint.write_shared((&path, form), simulation);
             let done = prepare(&folder)
-                .and_then(|()| checkpoint.write_shared((&path, form), simulation))
-                .and_then(|_| Checkpoint::keep_newest(folder.path(), keep));
+                .and_then(|()| folder.waiting().watch(&path, write))
+                .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
             note(done);
+            self.last = Instant::now();
             return Ok(());
         }
         let Some(state) = simulation.save() else { return Ok(()) };

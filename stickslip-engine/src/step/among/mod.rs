@@ -20,7 +20,7 @@ use crate::grid::{
 };
 use crate::lanes::Laned;
 use crate::material::Material;
-use crate::particles::{Particles, number_of, write_number};
+use crate::particles::{Particles, Shown, number_of, write_number};
 use crate::ranks::{
     Message, Partition, Ranks, SentAndWaited, add_up, bytes_of, combined, gathered, largest, message_to, read,
 };
@@ -518,8 +518,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
     }
 
+    /// What contact looks at of particles, where it knows how long they still move before it acts on them or not.
+    pub(super) fn guests_show(&self, knows_when: bool) -> Shown {
+        if knows_when && self.settings.rules.judge_by_place() { Shown::Places } else { Shown::Everything }
+    }
+
     /// Shows particles around nodes where bodies meet to the other ranks that have these nodes, as their guests.
-    pub(super) fn invite_guests(&mut self) {
+    pub(super) fn invite_guests(&mut self, shown: Shown) {
         let Some(among) = self.among.as_ref().filter(|_| self.state.bodies.len() > 1) else { return };
         let (active, present) = (&self.workspace.active, &self.workspace.field.present);
         let Some(border) = active.border.as_deref() else { return };
@@ -538,7 +543,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                         &active.order_of(tile.body)[here.start as usize..here.end as usize],
                     );
                 }
-                self.state.bodies[tile.body].particles.write_guests(&guests, &mut message);
+                self.state.bodies[tile.body].particles.write_guests(&guests, shown, &mut message);
             }
             (traffic.rank, message)
         };
@@ -561,7 +566,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
                 let count = counts.iter().sum::<usize>();
                 let (bytes, others) =
-                    after.split_at(self.state.bodies[body].particles.bytes_of_guests(count));
+                    after.split_at(self.state.bodies[body].particles.bytes_of_guests(count, shown));
                 tiles.push((body, u64::from_le_bytes(*home), counts, bytes));
                 rest = others;
             }
@@ -570,7 +575,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for (body, home, counts, bytes) in tiles {
             let particles = &mut self.state.bodies[body].particles;
             let first = particles.len() + particles.guests();
-            particles.receive_guests(bytes, counts.iter().sum());
+            particles.receive_guests(bytes, counts.iter().sum(), shown);
             self.workspace.active.invite((body, home), first, counts.into_iter());
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Home, read_particles, write_particles};
 use crate::basis::Basis;
-use crate::door::{RestoreError, SavedShare, SavedState};
+use crate::door::{NotTakenUp, RestoreError, SavedShare, SavedState};
 use crate::lanes::Laned;
 use crate::ranks::{Message, Partition, Ranks, combined, gathered};
 use crate::scene::Scene;
@@ -19,10 +19,12 @@ pub(crate) type Find<'a> = &'a mut dyn FnMut(&mut dyn FnMut(Vec<SavedShare>)) ->
 /// Particles that a rank sends and takes at a time.
 const AT_A_TIME: usize = 1 << 16;
 
-/// Of a body, its particles on a rank: how many, and the smallest number with the block of that particle.
+/// Of a body, its particles on a rank: how many, a sum over their numbers, and the smallest number with its particle's
+/// block.
 #[derive(Clone, Serialize, Deserialize)]
 struct Found {
     count: u64,
+    mixed: u64,
     first: Option<(u32, Vec<i32>)>,
 }
 
@@ -37,7 +39,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         (scene, ranks): (&Scene, Arc<dyn Ranks>),
         rest: &SavedState,
         find: Find,
-    ) -> Result<(), RestoreError> {
+    ) -> Result<(), NotTakenUp> {
         // All ranks have the same of it, and find the same wrong with it.
         self.check_rest(rest)?;
         let mut taken = Ok(());
@@ -50,7 +52,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 taken = std::mem::replace(&mut taken, Ok(())).and(appended);
             }
         });
-        let own = found.map_err(RestoreError).and(taken);
+        let own = found.map_err(NotTakenUp::Unfound).and(taken.map_err(NotTakenUp::from));
         first_problem(&*ranks, own)?;
 
         let mut loads: HashMap<[i32; D], u64> = HashMap::new();
@@ -61,24 +63,31 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             blocks.for_each(|block| *loads.entry(block).or_default() += 1);
             let first = (particles.numbers().iter().zip(0..)).min();
             let first = first.map(|(&number, place)| (number, self.block_of(particles, place).to_vec()));
-            of_bodies.push(Found { count: particles.len() as u64, first });
+            let mixed =
+                particles.numbers().iter().fold(0, |sum: u64, number| sum.wrapping_add(mixed(*number)));
+            of_bodies.push(Found { count: particles.len() as u64, mixed, first });
         }
         let of_bodies = combined(&*ranks, &of_bodies, |mut all: Vec<Found>, others| {
             for (one, other) in all.iter_mut().zip(others) {
                 one.count += other.count;
+                one.mixed = one.mixed.wrapping_add(other.mixed);
                 one.first = one.first.take().into_iter().chain(other.first).min();
             }
             all
         });
-        let counts = of_bodies.iter().map(|body| body.count as usize);
-        for ((body, filled), (saved, count)) in
-            (self.state.bodies.iter().zip(&self.settings.filled)).zip(rest.bodies.iter().zip(counts))
+        for ((body, &filled), (saved, found)) in
+            (self.state.bodies.iter().zip(&self.settings.filled)).zip(rest.bodies.iter().zip(&of_bodies))
         {
-            if *filled > 0 && count.checked_add(saved.missing) != Some(*filled) {
-                let name = &body.name;
-                return Err(RestoreError(format!(
-                    "body `{name}` has {filled} particles in the scene, and {count} in it"
-                )));
+            let (name, count) = (&body.name, found.count as usize);
+            if filled > 0 && count.checked_add(saved.missing) != Some(filled) {
+                let off = format!("body `{name}` has {filled} particles in the scene, and {count} in it");
+                return Err(RestoreError(off).into());
+            }
+            let each_once = || (0..filled as u32).fold(0, |sum: u64, number| sum.wrapping_add(mixed(number)));
+            if filled > 0 && saved.missing == 0 && found.mixed != each_once() {
+                return Err(
+                    RestoreError(format!("body `{name}` has particles that are numbered twice")).into()
+                );
             }
         }
 
@@ -98,7 +107,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let among = self.among.as_ref().expect("it has joined the others");
         self.state.contact_sums.keep(|bodies| among.keeps(bodies));
         self.send_home();
-        first_problem(&*ranks, self.check_starts(scene))
+        first_problem(&*ranks, self.check_starts(scene).map_err(NotTakenUp::from))
     }
 
     /// Sends all particles to the ranks that own their blocks, some at a time.
@@ -149,8 +158,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 }
 
 /// What is wrong on the first rank on which something is, for all.
-fn first_problem(ranks: &dyn Ranks, own: Result<(), RestoreError>) -> Result<(), RestoreError> {
-    let own = own.err().map(|RestoreError(problem)| problem);
-    let all = gathered(ranks, &own);
-    all.into_iter().flatten().next().map_or(Ok(()), |problem| Err(RestoreError(problem)))
+fn first_problem(ranks: &dyn Ranks, own: Result<(), NotTakenUp>) -> Result<(), NotTakenUp> {
+    let all = gathered(ranks, &own.err());
+    all.into_iter().flatten().next().map_or(Ok(()), Err)
+}
+
+/// A number whose sum over particles tells those with other numbers (the finalizer of SplitMix64, Steele et al. 2014).
+fn mixed(number: u32) -> u64 {
+    let mut x = u64::from(number).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
 }

@@ -4,8 +4,9 @@
 //! "stickslip checkpoint", a zero, the version of the format as u32, little-endian
 //! sections: some particles each, in MessagePack, packed by zlib or as they are
 //! the head, a map in MessagePack: program, scene, state without particles, memory, where sections lie, and their SHA-256
+//! whether the head is packed by zlib, a byte: 1 if it is, else 0
 //! where the head lies as u64, little-endian
-//! SHA-256 of the first line, the head and its place
+//! SHA-256 of all that but the sections
 //! ```
 //! That is version 3. Earlier versions have no sections, but a map with all of it in the place of the head, and a sum of
 //! all bytes; in version 2 the map is packed.
@@ -22,12 +23,11 @@ use super::file::{
 use super::folder::OutputFolder;
 use super::memory::{Memory, Values};
 use super::shared;
-use crate::door::{RestoreError, SavedState, Simulation};
-use flate2::bufread::ZlibDecoder;
+use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// A moment of a run from which it can go on.
@@ -113,25 +113,25 @@ impl Checkpoint {
             file.write_all(&first_line())?;
             let mut sections = Sections::new(form);
             Sections::of_state(&self.state, &mut |shares| file.write_all(&sections.add(shares)))?;
-            self.write_head(file, sections.list)
+            self.write_head(file, (sections.list, form))
         })
     }
 
     /// Writes one of the present state of a simulation that ranks share, each with sections of its own, in the same way;
-    /// `state` is all of it but particles. False of a simulation that nobody shares.
+    /// `state` is all of it but particles.
     ///
     /// # Errors
-    /// The disk of one of them is full or refuses; then nothing is left of it.
+    /// The disk of one of them is full or refuses, or nobody shares the simulation; then nothing is left of it.
     pub fn write_shared(
         &self,
         (path, form): (&Path, CheckpointForm),
         simulation: &dyn Simulation,
-    ) -> Result<bool, OutputError> {
+    ) -> Result<(), OutputError> {
         let part = part_of(path);
-        let Some(written) = shared::write_sections(simulation, (&part, form)) else { return Ok(false) };
-        let ended = written.and_then(|sections| {
-            let mut file = OpenOptions::new().append(true).open(&part)?;
-            self.write_head(&mut file, sections)?;
+        let ended = shared::write_sections(simulation, (&part, form)).and_then(|sections| {
+            let mut file = OpenOptions::new().write(true).open(&part)?;
+            file.seek(SeekFrom::Start(sections.last().map_or(START as u64, Section::end)))?;
+            self.write_head(&mut file, (sections, form))?;
             file.sync_all()?;
             fs::rename(&part, path)
         });
@@ -140,12 +140,15 @@ impl Checkpoint {
             let _ = fs::remove_file(&part);
             OutputError { path: path.to_path_buf(), source }
         })?;
-        secure(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))?;
-        Ok(true)
+        secure(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
     }
 
     /// Writes the head behind sections.
-    fn write_head(&self, file: &mut dyn Write, sections: Vec<Section>) -> io::Result<()> {
+    fn write_head(
+        &self,
+        file: &mut dyn Write,
+        (sections, form): (Vec<Section>, CheckpointForm),
+    ) -> io::Result<()> {
         let place = sections.last().map_or(START as u64, Section::end);
         let head = Checkpoint {
             program: self.program.clone(),
@@ -154,8 +157,11 @@ impl Checkpoint {
             memory: self.memory.clone(),
             sections,
         };
+        let head = rmp_serde::to_vec_named(&head).map_err(io_error)?;
+        let (is_packed, head) = sections::packed(head, form);
         let mut summed = Summed { file, sum: Sha256::new_with_prefix(first_line()) };
-        head.serialize(&mut rmp_serde::Serializer::new(&mut summed).with_struct_map()).map_err(io_error)?;
+        summed.write_all(&head)?;
+        summed.write_all(&[u8::from(is_packed)])?;
         summed.write_all(&place.to_le_bytes())?;
         let Summed { file, sum } = summed;
         file.write_all(&sum.finalize())
@@ -202,11 +208,13 @@ impl Checkpoint {
 
     /// One with sections, of a file of this length.
     fn open_sections(file: &mut File, length: u64) -> Result<Self, ReadProblem> {
-        const END: usize = size_of::<u64>() + SUM;
+        const END: usize = size_of::<u8>() + size_of::<u64>() + SUM;
         let mut end = [0; END];
         file.seek(SeekFrom::Start(length.saturating_sub(END as u64)))?;
         file.read_exact(&mut end).map_err(|_| damaged())?;
-        let (place, sum) = end.split_at(size_of::<u64>());
+        let ([is_packed], place, sum) = (&end[..1], &end[1..END - SUM], &end[END - SUM..]) else {
+            return Err(damaged());
+        };
         let place = u64::from_le_bytes(place.try_into().expect("it has eight bytes"));
         let size = length.checked_sub(END as u64).and_then(|end| end.checked_sub(place));
         let size = size.filter(|_| place >= START as u64).ok_or_else(damaged)?;
@@ -215,11 +223,12 @@ impl Checkpoint {
         file.take(size).read_to_end(&mut head)?;
         let mut found = Sha256::new_with_prefix(first_line());
         found.update(&head);
+        found.update([*is_packed]);
         found.update(place.to_le_bytes());
         if found.finalize()[..] != *sum {
             return Err(damaged());
         }
-        let checkpoint: Checkpoint = rmp_serde::from_slice(&head).map_err(|error| damage(&error))?;
+        let checkpoint: Checkpoint = sections::unpacked((*is_packed == 1, &head))?;
         let mut begin = START as u64;
         for section in &checkpoint.sections {
             if section.place() != begin || section.end() > place {
@@ -238,14 +247,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         let map = &content[START..];
-        let decoded: Result<Checkpoint, _> = match version {
-            PLAIN => rmp_serde::from_slice(map),
-            _ => {
-                let most = MOST_COMPRESSED * map.len() as u64;
-                rmp_serde::from_read(BufReader::new(ZlibDecoder::new(map).take(most)))
-            }
-        };
-        let whole = decoded.map_err(|error| damage(&error))?;
+        let whole: Checkpoint = sections::unpacked((version == COMPRESSED, map))?;
         // Only later ones have any.
         Ok(Checkpoint { sections: Vec::new(), ..whole })
     }
@@ -286,7 +288,11 @@ impl Checkpoint {
         if !self.sections.is_empty()
             && let Some(restored) = shared::restore(simulation, &self.state, (path, &self.sections))
         {
-            return Ok(restored);
+            return match restored {
+                Err(NotTakenUp::Unfound(problem)) => Err(layout(&problem).at(path)),
+                Err(NotTakenUp::Other(problem)) => Ok(Err(problem)),
+                Ok(()) => Ok(Ok(())),
+            };
         }
         self.fill(path)?;
         Ok(simulation.restore(self.state))
@@ -396,6 +402,19 @@ fn damage(error: &rmp_serde::decode::Error) -> ReadProblem {
 pub(super) fn is_checkpoint(name: &str) -> bool {
     let digits = name.strip_suffix(".checkpoint");
     digits.is_some_and(|digits| digits.len() >= 10 && digits.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+impl Checkpoint {
+    /// The bytes of a checkpoint that has a section with these bytes, and else what a head says: sound by its sums
+    /// whatever they are, so that one can try what reading makes of it. None where the head is none.
+    #[doc(hidden)]
+    pub fn sealed(section: &[u8], head: &[u8]) -> Option<Vec<u8>> {
+        let checkpoint: Checkpoint = rmp_serde::from_slice(head).ok()?;
+        let mut bytes = [&first_line()[..], section].concat();
+        let sections = vec![Section::sealed(section).at(START as u64)];
+        checkpoint.write_head(&mut bytes, (sections, CheckpointForm::Plain)).ok()?;
+        Some(bytes)
+    }
 }
 
 /// A file and the sum of what was written to it.

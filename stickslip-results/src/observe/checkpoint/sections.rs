@@ -6,6 +6,7 @@ use crate::observe::file::ReadProblem;
 use flate2::Compression;
 use flate2::bufread::ZlibDecoder;
 use flate2::write::ZlibEncoder;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -72,15 +73,14 @@ impl Section {
     /// That of some particles, and its bytes.
     pub(in crate::observe) fn of(shares: &[SavedShare], form: CheckpointForm) -> (Self, Vec<u8>) {
         let plain = rmp_serde::to_vec(shares).expect("memory takes what is written");
-        let packed = || {
-            let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
-            packed.write_all(&plain).and_then(|()| packed.finish()).expect("memory takes all bytes")
-        };
-        let packed = (form == CheckpointForm::Compressed).then(packed);
-        let packed = packed.filter(|packed| plain.len() as u64 <= MOST_COMPRESSED * packed.len() as u64);
-        let (is_packed, bytes) = packed.map_or((false, plain), |packed| (true, packed));
+        let (is_packed, bytes) = packed(plain, form);
         let sum = Sha256::digest(&bytes).to_vec();
         (Section { place: 0, bytes: bytes.len() as u64, packed: is_packed, sum }, bytes)
+    }
+
+    /// That of any bytes that are not packed.
+    pub(super) fn sealed(bytes: &[u8]) -> Self {
+        Section { place: 0, bytes: bytes.len() as u64, packed: false, sum: Sha256::digest(bytes).to_vec() }
     }
 
     /// The same there.
@@ -123,13 +123,29 @@ impl Section {
         if Sha256::digest(bytes)[..] != self.sum[..] {
             return Err(damaged());
         }
-        let decoded = match self.packed {
-            false => rmp_serde::from_slice(bytes),
-            true => {
-                let most = MOST_COMPRESSED * bytes.len() as u64;
-                rmp_serde::from_read(BufReader::new(ZlibDecoder::new(bytes).take(most)))
-            }
-        };
-        decoded.map_err(|error| damage(&error))
+        unpacked((self.packed, bytes))
     }
+}
+
+/// Bytes in a form, and whether they are packed: those of which one would stand for too many are not.
+pub(super) fn packed(plain: Vec<u8>, form: CheckpointForm) -> (bool, Vec<u8>) {
+    if form == CheckpointForm::Plain {
+        return (false, plain);
+    }
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+    let packed = packed.write_all(&plain).and_then(|()| packed.finish()).expect("memory takes all bytes");
+    let few = plain.len() as u64 <= MOST_COMPRESSED * packed.len() as u64;
+    if few { (true, packed) } else { (false, plain) }
+}
+
+/// What such bytes say.
+pub(super) fn unpacked<X: DeserializeOwned>((is_packed, bytes): (bool, &[u8])) -> Result<X, ReadProblem> {
+    let decoded = match is_packed {
+        false => rmp_serde::from_slice(bytes),
+        true => {
+            let most = MOST_COMPRESSED * bytes.len() as u64;
+            rmp_serde::from_read(BufReader::new(ZlibDecoder::new(bytes).take(most)))
+        }
+    };
+    decoded.map_err(|error| damage(&error))
 }

@@ -1,21 +1,24 @@
 //! A file that ranks write together.
 
 use crate::observe::file::FileSum;
-use crate::ranks::{Ranks, bytes_of, gathered};
+use crate::ranks::{Ranks, bytes_of, gathered, read};
 use serde::{Deserialize, Serialize};
+use serde_bytes::ByteBuf;
 use std::fs::{File, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// A file that ranks write together: each its pieces, where all see the file; else through the first, one after the other.
-/// All ranks make the same calls in the same order.
+/// A file that ranks write together: each its pieces, where all see the same file; else through the first, one after
+/// the other. All ranks make the same calls in the same order.
 pub(super) struct JointFile<'a> {
     ranks: &'a dyn Ranks,
     /// None where the first one writes for this rank.
     file: Option<File>,
     /// Whether each rank writes.
     each: bool,
+    /// Whether all are on one machine.
+    on_one_machine: bool,
     end: u64,
     /// Of all pieces so far.
     sum: crc32fast::Hasher,
@@ -62,12 +65,14 @@ impl<'a> JointFile<'a> {
         if ranks.rank() > 0 {
             file = marked(path, &mark).ok();
         }
-        let sees_it = file.as_ref().is_some_and(|file| !is_on_nfs(file));
-        let each = gathered(ranks, &sees_it).into_iter().all(|sees_it| sees_it);
+        let seen = file.as_ref().map(shows_all_the_same);
+        let all: Vec<(Option<bool>, String)> = gathered(ranks, &(seen, machine()));
+        let on_one_machine = all.iter().all(|(_, machine)| !machine.is_empty() && *machine == all[0].1);
+        let each = all.iter().all(|(seen, _)| seen.is_some_and(|same| same || on_one_machine));
         if !each && ranks.rank() > 0 {
             file = None;
         }
-        JointFile { ranks, file, each, end: start, sum: crc32fast::Hasher::new(), trouble }
+        JointFile { ranks, file, each, on_one_machine, end: start, sum: crc32fast::Hasher::new(), trouble }
     }
 
     /// Puts the pieces of all ranks behind each other and behind what is there: where that of this rank lies.
@@ -118,7 +123,9 @@ impl<'a> JointFile<'a> {
             self.write_at(0, before);
             self.write_at(self.end, behind);
         }
-        let flushed = self.file.as_ref().filter(|_| for_good).map_or(Ok(()), File::sync_data);
+        // What another machine has not flushed, the first cannot flush later.
+        let flushes = for_good || !self.on_one_machine;
+        let flushed = self.file.as_ref().filter(|_| flushes).map_or(Ok(()), File::sync_data);
         let trouble = self.trouble.take().or(flushed.err());
         let own = trouble.map(|error| Trouble {
             rank: self.ranks.rank(),
@@ -151,14 +158,22 @@ fn marked(path: &Path, mark: &[u8]) -> io::Result<File> {
     if !mark.is_empty() && found == mark { Ok(file) } else { Err(io::ErrorKind::NotFound.into()) }
 }
 
-/// Whether machines may see each other's bytes in it late.
+/// What no other machine has, nor this one after it is started again; nothing where that is not known.
+fn machine() -> String {
+    std::fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default()
+}
+
+/// Whether machines that write to parts of a file beside each other keep each other's bytes: those that share disks do,
+/// by locks of their own. Others write back whole pages, with what they saw of the bytes between.
 #[cfg(target_os = "linux")]
-fn is_on_nfs(file: &File) -> bool {
-    rustix::fs::fstatfs(file).is_ok_and(|found| found.f_type == rustix::fs::NFS_SUPER_MAGIC)
+fn shows_all_the_same(file: &File) -> bool {
+    /// Lustre, GPFS, BeeGFS, Ceph, OCFS2, GFS2: as `statfs` names them.
+    const SHARED: [u32; 6] = [0x0bd0_0bd0, 0x4750_4653, 0x1983_0326, 0x00c3_6400, 0x7461_636f, 0x0116_1970];
+    rustix::fs::fstatfs(file).is_ok_and(|found| SHARED.contains(&(found.f_type as u32)))
 }
 
 #[cfg(not(target_os = "linux"))]
-fn is_on_nfs(_: &File) -> bool {
+fn shows_all_the_same(_: &File) -> bool {
     false
 }
 
@@ -179,19 +194,19 @@ impl<'a> JointReading<'a> {
         JointReading { ranks, file, each }
     }
 
-    /// Shows this rank its share of so many pieces, by their numbers, which `take` gets of the file; what a rank cannot
-    /// read, it gets as nothing. No rank may leave before a call of all has followed.
+    /// Shows this rank its share of so many pieces, by their numbers, which `take` gets of the file, or what the system
+    /// says. No rank may leave before a call of all has followed.
     pub(super) fn each_share(
         mut self,
         pieces: usize,
         read_piece: &dyn Fn(usize, &mut File) -> io::Result<Vec<u8>>,
-        take: &mut dyn FnMut(usize, Vec<u8>),
+        take: &mut dyn FnMut(usize, Result<Vec<u8>, String>),
     ) {
         let (rank, count) = (self.ranks.rank(), self.ranks.count());
         let share = |rank: usize| rank * pieces / count..(rank + 1) * pieces / count;
         let mut read_one = |piece: usize| match &mut self.file {
-            Ok(file) => read_piece(piece, file).unwrap_or_default(),
-            Err(_) => Vec::new(),
+            Ok(file) => read_piece(piece, file).map_err(|error| format!("{error}, on rank {rank}")),
+            Err(error) => Err(error.to_string()),
         };
         if self.each {
             share(rank).for_each(|piece| take(piece, read_one(piece)));
@@ -199,14 +214,18 @@ impl<'a> JointReading<'a> {
         }
         for other in 0..count {
             for piece in share(other) {
-                let message = (rank == 0).then(|| (other, read_one(piece)));
                 if other == 0 {
-                    message.into_iter().for_each(|(_, bytes)| take(piece, bytes));
+                    if rank == 0 {
+                        take(piece, read_one(piece));
+                    }
                     continue;
                 }
+                let message = (rank == 0).then(|| (other, bytes_of(&read_one(piece).map(ByteBuf::from))));
                 let from = if rank == other { &[0][..] } else { &[] };
                 let came = self.ranks.exchange_during(message.into_iter().collect(), from, &mut || ());
-                came.into_iter().for_each(|(_, bytes)| take(piece, bytes));
+                for (_, bytes) in came {
+                    take(piece, read::<Result<ByteBuf, String>>(&bytes).map(ByteBuf::into_vec));
+                }
             }
         }
     }
@@ -260,7 +279,7 @@ mod tests {
                         let mut bytes = vec![0; 10];
                         file.read_exact(&mut bytes).map(|()| bytes)
                     },
-                    &mut |piece, bytes| found.push((piece, bytes)),
+                    &mut |piece, bytes| found.push((piece, bytes.unwrap())),
                 );
                 // Nobody leaves before.
                 ranks.gather(&[]);

@@ -8,9 +8,9 @@ pub(super) use question::{Asked, Question, answer};
 
 use super::checkpoint::{CheckpointForm, MOST_PARTICLES, START, Section};
 use super::file::FileSum;
-use super::particles::{PieceStart, chosen, count_by_stretch, cut, encode_piece};
+use super::particles::{PieceStart, count_by_stretch, cut, encode_piece, is_chosen};
 use super::vtk::{END, PieceSize};
-use crate::door::{ParticleSnapshot, RestoreError, SavedShare, SavedState, Simulation, View};
+use crate::door::{NotTakenUp, ParticleSnapshot, SavedShare, SavedState, Simulation, View};
 use crate::ranks::{Message, Ranks, bytes_of, combined, gathered, message_to, read};
 use crate::scene::SnapshotContent;
 use joint_file::{JointFile, JointReading, Trouble};
@@ -55,19 +55,18 @@ fn act(own: &dyn Simulation, ranks: &dyn Ranks, asked: &[u8]) -> Vec<u8> {
     }
 }
 
-/// What the first rank says of what all have done; none of a simulation that nobody shares.
-fn ask<X: for<'de> Deserialize<'de>>(view: &dyn View, request: &Request) -> Option<io::Result<X>> {
-    let said = view.ask_ranks(&|| bytes_of(request))?;
-    let done: Result<X, Trouble> = read(&said[0]);
-    Some(done.map_err(io::Error::from))
-}
-
-/// Has ranks write a file of their particles, the same as one would write: what went into it. None of a simulation that
-/// nobody shares.
+/// What the first rank says of what all have done.
 ///
 /// # Errors
-/// The disk of one of them is full or refuses.
-pub(super) fn write_particles(view: &dyn View, request: ParticlesRequest) -> Option<io::Result<FileSum>> {
+/// The disk of one of them is full or refuses, or nobody shares the simulation; so for those who ask.
+fn ask<X: for<'de> Deserialize<'de>>(view: &dyn View, request: &Request) -> io::Result<X> {
+    let said = view.ask_ranks(&|| bytes_of(request)).ok_or(io::ErrorKind::Unsupported)?;
+    let done: Result<X, Trouble> = read(&said[0]);
+    done.map_err(io::Error::from)
+}
+
+/// Has ranks write a file of their particles, the same as one would write: what went into it.
+pub(super) fn write_particles(view: &dyn View, request: ParticlesRequest) -> io::Result<FileSum> {
     let path = absolute(&request.path).unwrap_or(request.path);
     ask(view, &Request::Particles(ParticlesRequest { path, ..request }))
 }
@@ -80,8 +79,8 @@ fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest)
         let mut numbers = Vec::new();
         // Whatever has no masses has no particles.
         let _ = view.visit_column(body, "mass", &mut |number, _| numbers.push(number));
-        let wanted = numbers.into_iter().filter(|number| (*number as usize).is_multiple_of(content.every));
-        own.extend(count_by_stretch(wanted.map(|number| (body as u32, number))));
+        let all = numbers.into_iter().map(|number| (body as u32, number));
+        own.extend(count_by_stretch(all.filter(|which| is_chosen((bodies, content.every), *which))));
     }
     let counts = combined(ranks, &own, |mut all, others| {
         others.into_iter().for_each(|(stretch, count)| *all.entry(stretch).or_default() += count);
@@ -98,8 +97,8 @@ fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest)
         let mut parts = Vec::new();
         let mut messages: Vec<Message> = Vec::new();
         for (rank, piece) in (round..pieces.len()).enumerate().take(ranks.count()) {
-            let rows = view.snapshot_between([pieces[piece].begin(), ends[piece]]);
-            let rows = chosen(rows, bodies, content.every);
+            let wanted = |body, number| is_chosen((bodies, content.every), (body, number));
+            let rows = view.snapshot_between([pieces[piece].begin(), ends[piece]], &wanted);
             match rank == ranks.rank() {
                 true => parts.push(rows),
                 false if rows.number.is_empty() => {}
@@ -123,15 +122,11 @@ fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest)
     file.expect("there is a piece").finish([header.as_bytes(), END], false)
 }
 
-/// Has ranks write the particles of a checkpoint as sections of a file that has nothing else yet. None of a simulation
-/// that nobody shares.
-///
-/// # Errors
-/// The disk of one of them is full or refuses.
+/// Has ranks write the particles of a checkpoint as sections of a file that has nothing else yet.
 pub(super) fn write_sections(
     view: &dyn View,
     (path, form): (&Path, CheckpointForm),
-) -> Option<io::Result<Vec<Section>>> {
+) -> io::Result<Vec<Section>> {
     let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
     ask(view, &Request::Sections(path, form == CheckpointForm::Compressed))
 }
@@ -163,7 +158,7 @@ pub(super) fn restore(
     simulation: &mut dyn Simulation,
     rest: &SavedState,
     (path, sections): (&Path, &[Section]),
-) -> Option<Result<(), RestoreError>> {
+) -> Option<Result<(), NotTakenUp>> {
     let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
     simulation.restore_on_ranks(rest, &bytes_of(&(path, sections)))
 }
@@ -174,9 +169,10 @@ fn find(ranks: &dyn Ranks, asked: &[u8], show: &mut dyn FnMut(Vec<SavedShare>)) 
     JointReading::open(ranks, &path).each_share(
         sections.len(),
         &|section, file| sections[section].bytes(file),
-        &mut |section, bytes| match sections[section].shares(&bytes) {
-            Ok(shares) => show(shares),
-            Err(problem) => result = Err(format!("cannot be read: {problem}")),
+        &mut |section, bytes| match bytes.map(|bytes| sections[section].shares(&bytes)) {
+            Ok(Ok(shares)) => show(shares),
+            Ok(Err(problem)) => result = Err(problem.to_string()),
+            Err(told) => result = Err(told),
         },
     );
     result

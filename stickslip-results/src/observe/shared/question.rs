@@ -5,6 +5,8 @@ use crate::door::View;
 use crate::observe::arrivals::{Furthest, MassMean};
 use crate::observe::fronts::FrontQuestion;
 use crate::observe::points::PointsQuestion;
+use crate::observe::sections::SectionCut;
+use crate::observe::surfaces::Carriers;
 use crate::ranks::{Ranks, bytes_of, combined, read};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -28,6 +30,8 @@ pub(in crate::observe) enum Asked {
     Mean(MassMean),
     Front(FrontQuestion),
     Points(PointsQuestion),
+    Section(SectionCut),
+    Carriers(Carriers),
     Near(Near),
 }
 
@@ -39,6 +43,8 @@ impl Asked {
             Asked::Mean(question) => said(question, own, ranks),
             Asked::Front(question) => said(question, own, ranks),
             Asked::Points(question) => said(&question.points(), own, ranks),
+            Asked::Section(question) => said(question, own, ranks),
+            Asked::Carriers(question) => said(question, own, ranks),
             Asked::Near(question) => said(question, own, ranks),
         }
     }

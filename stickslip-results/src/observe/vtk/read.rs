@@ -225,14 +225,24 @@ impl PointArrays {
         }
         let mut read_all = Vec::new();
         let mut packed = Vec::new();
+        let mut free = 0;
         for (offset, count) in place.offsets.iter().zip(&self.counts) {
             let start = self.appended.checked_add(*offset).ok_or_else(cut)?;
             let bytes = self.bytes.get(start..).ok_or_else(cut)?;
             let total = count.checked_mul(each).ok_or_else(cut)?;
+            // Pieces that lie upon each other would take memory out of proportion to the file.
+            if *offset < free {
+                return Err(cut());
+            }
             if self.compressed {
-                packed.extend(split(bytes, total).ok_or_else(cut)?);
+                let blocks = split(bytes, total).ok_or_else(cut)?;
+                free = offset
+                    + 8 * (3 + blocks.len())
+                    + blocks.iter().map(|(block, _)| block.len()).sum::<usize>();
+                packed.extend(blocks);
                 continue;
             }
+            free = offset + size_of::<u64>() + total;
             let (size, bytes) = bytes.split_first_chunk().ok_or_else(cut)?;
             let whole = bytes.get(..total).filter(|_| u64::from_le_bytes(*size) == total as u64);
             read_all.push(read(whole.ok_or_else(cut)?));
