@@ -24,9 +24,10 @@ const IS_PACKED: usize = 1;
 /// With one of so many outputs look whether they fit, which opens all files.
 const REMEMBERED: u64 = 20;
 
-/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the first
-/// line of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed already or by
-/// us; or a section and a head of version 3, with all sums: the four bytes before say how long the section is.
+/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the
+/// first line of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed
+/// already or by us; or a section and a head of version 3, with all sums: the four bytes before say how long the
+/// section is.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();

@@ -613,8 +613,9 @@ fn peaks(mut launcher: Child, out: &str) -> (Child, Vec<f64>) {
     (launcher, peaks.into_values().collect())
 }
 
-/// Problem P5 of the bench with two million particles, whose snapshots have the same bytes from any number of processes;
-/// stopped with a checkpoint, and taken up by another number. Columns are named, so that one process draws no picture.
+/// Problem P5 of the bench with two million particles, whose snapshots have the same bytes from any number of
+/// processes; stopped with a checkpoint, and taken up by another number. Columns are named, so that one process draws
+/// no picture.
 #[test]
 #[ignore = "takes minutes, and some 4 GB"]
 fn memory_of_a_rank_falls_with_their_number() {

@@ -17,8 +17,8 @@ pub fn ask_for_large<T>(first: *const T, count: usize) {
         // grow where it is.
         let start = first.addr() / page * page;
         let end = (first.addr() + bytes).next_multiple_of(page);
-        // SAFETY: the call changes nothing that a program can see but its speed, whoever has memory in these pages. Where
-        // the system does not do as it is asked nothing is lost.
+        // SAFETY: the call changes nothing that a program can see but its speed, whoever has memory in these pages.
+        // Where the system does not do as it is asked nothing is lost.
         unsafe { libc::madvise(start as *mut libc::c_void, end - start, libc::MADV_HUGEPAGE) };
     }
     #[cfg(not(target_os = "linux"))]

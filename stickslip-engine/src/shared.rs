@@ -27,8 +27,8 @@ use serde_bytes::ByteBuf;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What the program of a rank can do, whose engine knows neither files nor their forms. All ranks do it at once, and may
-/// talk to each other while they do.
+/// What the program of a rank can do, whose engine knows neither files nor their forms. All ranks do it at once, and
+/// may talk to each other while they do.
 #[derive(Clone, Copy)]
 pub struct Program {
     /// Does what the first one asks with what this rank has, and says how that went.

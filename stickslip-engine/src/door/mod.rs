@@ -121,8 +121,8 @@ pub trait View {
     fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
         Err(NoColumn::among(&self.columns(body), name))
     }
-    /// Shows a column of a body's particles to `look`, the number and the components in space of one after the other, in
-    /// no order that means anything; where ranks share them, only some of them are in one place at a time.
+    /// Shows a column of a body's particles to `look`, the number and the components in space of one after the other,
+    /// in no order that means anything; where ranks share them, only some of them are in one place at a time.
     ///
     /// # Errors
     /// As [`View::column`].
@@ -209,9 +209,9 @@ pub trait Simulation: View + Send {
     fn save_columns(&self, _body: usize, _take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
         false
     }
-    /// The bytes of what the particles of a body have: of each column its name, and each of its entries for one particle
-    /// after the other, ordered by number. Where ranks share them, only some are in one place at a time. False of a
-    /// simulation that has no state as data.
+    /// The bytes of what the particles of a body have: of each column its name, and each of its entries for one
+    /// particle after the other, ordered by number. Where ranks share them, only some are in one place at a time. False
+    /// of a simulation that has no state as data.
     fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
         let mut order: Option<Vec<u32>> = None;
         self.save_columns(body, &mut |numbers, column| {

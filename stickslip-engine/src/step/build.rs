@@ -51,8 +51,8 @@ pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>
 }
 
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
-/// `step`, `bodies`, `ledger` and what else is of the whole ask the others. What is of single particles is of those that
-/// this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`, `save_shares`,
+/// `step`, `bodies`, `ledger` and what else is of the whole ask the others. What is of single particles is of those
+/// that this rank has: `particles`, `snapshot`, `grid_snapshot`, `visit`, `fastest`, `trace`, `column`, `save_shares`,
 /// `save_columns`; `contact_sums` and `patches`, and these in `save_rest`, are of the pairs whose sums it keeps. Nobody
 /// can write to it or give it another state; [`crate::shared`] has what runs need.
 ///
@@ -221,8 +221,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         Ok(engine)
     }
 
-    /// The simulation with the particles that begin where some are wanted: of bodies whose volumes are known, the others
-    /// are never there.
+    /// The simulation with the particles that begin where some are wanted: of bodies whose volumes are known, the
+    /// others are never there.
     fn keeping(
         scene: &Scene,
         path: ParticleLoop,
@@ -396,8 +396,8 @@ struct Filled {
 }
 
 impl Filled {
-    /// Those of a body that begin where some are wanted; none of a body without bounds. Where the volume of all is known,
-    /// they are taken one after the other.
+    /// Those of a body that begin where some are wanted; none of a body without bounds. Where the volume of all is
+    /// known, they are taken one after the other.
     fn of(
         scene: &Scene,
         body: &scene::Body,

@@ -76,8 +76,8 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// A series, the list `name.pvd` or `name.csv` and files in the folder `name`: empty, or what is there of a run that
-    /// goes on, in its format.
+    /// A series, the list `name.pvd` or `name.csv` and files in the folder `name`: empty, or what is there of a run
+    /// that goes on, in its format.
     pub(super) fn create(
         folder: &OutputFolder,
         name: &'static str,
@@ -116,8 +116,8 @@ impl Frames {
         });
     }
 
-    /// Adds a snapshot at a time [s] that `write` puts under a name of its own, before it gets the name that it has in the
-    /// series; a second one at the time of the last takes its place.
+    /// Adds a snapshot at a time [s] that `write` puts under a name of its own, before it gets the name that it has in
+    /// the series; a second one at the time of the last takes its place.
     ///
     /// # Errors
     /// The disk is full or refuses, now or at an earlier snapshot; then the series is as it was.

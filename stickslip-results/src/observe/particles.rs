@@ -344,8 +344,8 @@ mod tests {
         }
     }
 
-    /// Of three bodies, the second with as many particles as a piece takes: pieces end where stretches of numbers do, and
-    /// hold the same particles as one would.
+    /// Of three bodies, the second with as many particles as a piece takes: pieces end where stretches of numbers do,
+    /// and hold the same particles as one would.
     #[test]
     fn a_file_of_many_particles_has_pieces() {
         let folder = tempfile::tempdir().unwrap();

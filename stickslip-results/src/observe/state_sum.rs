@@ -20,8 +20,8 @@ pub fn state_sum(state: &SavedState) -> String {
     sum.finish(state.time, state.steps)
 }
 
-/// The [`state_sum`] of a simulation of a scene as it is now, for which no more than one column is copied at a time; none
-/// of a simulation that has no state as data.
+/// The [`state_sum`] of a simulation of a scene as it is now, for which no more than one column is copied at a time;
+/// none of a simulation that has no state as data.
 pub fn present_state_sum(scene: &Scene, simulation: &dyn Simulation) -> Option<String> {
     let mut sum = StateSum::default();
     for (number, body) in scene.bodies.iter().enumerate() {

@@ -668,8 +668,8 @@ impl Scene {
         body.particles_per_side.unwrap_or(self.discretization.particles_per_side) as f64
     }
 
-    /// Pairs of rigid bodies that a joint holds together, the smaller index first: they do not touch each other. Springs
-    /// do not hold.
+    /// Pairs of rigid bodies that a joint holds together, the smaller index first: they do not touch each other.
+    /// Springs do not hold.
     pub fn joined_pairs(&self) -> HashSet<[usize; 2]> {
         let holding = self.joints.iter().filter(|joint| joint.holds());
         holding.filter_map(|joint| Some([joint.body.min(joint.to?), joint.body.max(joint.to?)])).collect()

@@ -233,9 +233,9 @@ impl Checkpoints {
     }
 }
 
-/// The newest checkpoint of a run in a folder that did not finish, where a new run of `scene` there is likely a mistake:
-/// the run was killed or ran out of its time; or it was interrupted, failed or was stopped by a check, and could go on
-/// with `scene`, see [`same_physics`]. None where there is no such run, or one is under way.
+/// The newest checkpoint of a run in a folder that did not finish, where a new run of `scene` there is likely a
+/// mistake: the run was killed or ran out of its time; or it was interrupted, failed or was stopped by a check, and
+/// could go on with `scene`, see [`same_physics`]. None where there is no such run, or one is under way.
 ///
 /// # Errors
 /// The folder cannot be read.

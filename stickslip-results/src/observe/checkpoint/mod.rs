@@ -3,13 +3,13 @@
 //! ```text
 //! "stickslip checkpoint", a zero, the version of the format as u32, little-endian
 //! sections: some particles each, in MessagePack, packed by zlib or as they are
-//! the head, a map in MessagePack: program, scene, state without particles, memory, where sections lie, and their SHA-256
+//! the head, a map in MessagePack: program, scene, state without particles, memory, where sections lie, their SHA-256
 //! whether the head is packed by zlib, a byte: 1 if it is, else 0
 //! where the head lies as u64, little-endian
 //! SHA-256 of all that but the sections
 //! ```
-//! That is version 3. Earlier versions have no sections, but a map with all of it in the place of the head, and a sum of
-//! all bytes; in version 2 the map is packed.
+//! That is version 3. Earlier versions have no sections, but a map with all of it in the place of the head, and a sum
+//! of all bytes; in version 2 the map is packed.
 
 mod sections;
 
@@ -117,8 +117,8 @@ impl Checkpoint {
         })
     }
 
-    /// Writes one of the present state of a simulation that ranks share, each with sections of its own, in the same way;
-    /// `state` is all of it but particles.
+    /// Writes one of the present state of a simulation that ranks share, each with sections of its own, in the same
+    /// way; `state` is all of it but particles.
     ///
     /// # Errors
     /// The disk of one of them is full or refuses, or nobody shares the simulation; then nothing is left of it.
@@ -315,8 +315,8 @@ impl Checkpoint {
         Ok(names.into_iter().map(|name| path.join(name)).collect())
     }
 
-    /// The newest checkpoint in the folder of a run that can be [opened](Checkpoint::open), where it lies, and why newer
-    /// ones cannot.
+    /// The newest checkpoint in the folder of a run that can be [opened](Checkpoint::open), where it lies, and why
+    /// newer ones cannot.
     ///
     /// # Errors
     /// There is none, or none can be read.

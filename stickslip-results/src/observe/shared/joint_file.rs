@@ -113,8 +113,8 @@ impl<'a> JointFile<'a> {
         self.trouble = file.seek(SeekFrom::Start(place)).and_then(|_| file.write_all(bytes)).err();
     }
 
-    /// Ends the file: with what the first rank puts before all pieces, which fits where they begin, and behind them; and
-    /// if it must outlive a power cut, once it is on the disk.
+    /// Ends the file: with what the first rank puts before all pieces, which fits where they begin, and behind them;
+    /// and if it must outlive a power cut, once it is on the disk.
     ///
     /// # Errors
     /// A rank could not write, or the disk refuses: all ranks say so.
@@ -247,8 +247,8 @@ mod tests {
         })
     }
 
-    /// Each writes where all see the file, and the first for all where one does not: the same file, whose pieces come back
-    /// in both ways.
+    /// Each writes where all see the file, and the first for all where one does not: the same file, whose pieces come
+    /// back in both ways.
     #[test]
     fn ranks_write_and_read_one_file_whether_they_see_it_or_not() {
         let folder = tempfile::tempdir().unwrap();

@@ -11,7 +11,8 @@ use crate::ranks::{Ranks, bytes_of, combined, read};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// A question about all particles: what it finds among some of them and among others, joined, is what it finds among all.
+/// A question about all particles: what it finds among some of them and among others, joined, is what it finds among
+/// all.
 pub(in crate::observe) trait Question: Serialize {
     /// What it finds.
     type Answer: Serialize + DeserializeOwned;

@@ -1,5 +1,5 @@
-//! VTK's files of points or triangles in XML (`.vtu`, `.vtp`), with appended raw data, in blocks compressed by zlib or as
-//! it is.
+//! VTK's files of points or triangles in XML (`.vtu`, `.vtp`), with appended raw data, in blocks compressed by zlib or
+//! as it is.
 //!
 //! Layout of the data of one array, all little-endian (VTK file formats, "Appended data" and "Compression"):
 //!
