@@ -511,13 +511,13 @@ fn ranks_share_files_of_many_particles() {
         let first = fs::read(alone.join("particles/00001.vtu")).unwrap();
         let pieces = String::from_utf8_lossy(&first).matches("<Piece ").count();
         assert_eq!(pieces, [3, 1][i], "{snapshots}");
-        let options = options(&shared);
         among(&scene, 3, |simulation| {
+            let options = options(&shared);
             let mut stop = StopAfter(2, options.clone());
             let stopped = run_with(&scene, simulation, &options, &mut [&mut stop], &mut |_| {}).unwrap();
             assert_eq!(stopped.status, Status::Interrupted);
         });
-        among(&scene, 2, |simulation| resume(&scene, simulation, &options, &mut |_| {}).unwrap());
+        among(&scene, 2, |simulation| resume(&scene, simulation, &options(&shared), &mut |_| {}).unwrap());
         assert_same_run(&alone, &shared);
     }
 }

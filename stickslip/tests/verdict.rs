@@ -769,6 +769,27 @@ fn steps_below_the_spacing_of_numbers_are_found() {
     assert!(kind(&single, near).is_empty());
 }
 
+/// Their angular momentum about the middle of both is that of round-off.
+#[test]
+fn blocks_that_fly_side_by_side_are_sound() {
+    let block = |name: &str, x: f64| {
+        format!(
+            "[[bodies]]\nname = {name:?}\nmaterial = \"gel\"\nvelocity = [1, 2]\n\
+             shape.box = {{ min = [{x}, 0], max = [{}, 4] }}\n",
+            x + 4.0
+        )
+    };
+    let text = format!(
+        "space = {{ dimension = \"plane-strain\", cell = 0.1 }}\ntime = {{ end = 0.1 }}\n\
+         materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e4, poisson_ratio = 0.3 }} }}\n{}{}",
+        block("one", 0.0),
+        block("other", 10.0)
+    );
+    let scene = scene::parse("blocks", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    let (_, warnings) = judge(&text, &mut *stickslip::step::build(&scene).unwrap());
+    assert!(warnings.is_empty(), "{warnings:?}");
+}
+
 #[test]
 fn two_disks_that_collide_and_ring_are_sound() {
     let text = r#"

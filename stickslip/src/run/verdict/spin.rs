@@ -183,10 +183,12 @@ impl Together {
             let relative = minus(state.velocity, velocity).map(|v| state.mass * v);
             norm(own(state)) + norm(cross(minus(state.position, center), relative))
         };
-        // Of bodies that meet head on, arm and momentum have no moment but that of round-off.
+        // Of bodies that meet head on, or fly side by side, arm and momentum have no moment but that of round-off.
         let most = |state: &BodyState| {
             let relative = minus(state.velocity, velocity).map(|v| state.mass * v);
-            HEAD_ON * norm(minus(state.position, center)) * norm(relative)
+            let whole = state.velocity.map(|v| state.mass * v);
+            let momentum = (HEAD_ON * norm(relative)).max(ROUNDING * norm(whole));
+            norm(minus(state.position, center)) * momentum
         };
         let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
         self.scale = self.scale.max(sizes.sum());
