@@ -26,8 +26,9 @@ const REMEMBERED: u64 = 20;
 
 /// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the
 /// first line of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed
-/// already or by us; or a section and a head of version 3, with all sums: the four bytes before say how long the
-/// section is.
+/// already or by us; or of version 3, where four bytes before say how long sections are, a section and a plain head,
+/// with all sums, or sections and a head with the byte that says whether it is packed, as they are but for the head's
+/// sum.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();
@@ -39,6 +40,14 @@ pub fn run(bytes: &[u8]) {
             let (section, head) = content.split_at(section);
             let Some(whole) = Checkpoint::sealed(section, head) else { return };
             whole
+        }
+        5 => {
+            let Some((length, content)) = content.split_first_chunk() else { return };
+            let sections = content.len().min(u32::from_le_bytes(*length) as usize);
+            let line = [&b"stickslip checkpoint\0"[..], &3_u32.to_le_bytes()].concat();
+            let place = ((HEAD + sections) as u64).to_le_bytes();
+            let sum = Sha256::digest([&line, &content[sections..], &place].concat());
+            [&line, content, &place, &sum[..]].concat()
         }
         _ => {
             let mut whole = b"stickslip checkpoint\0".to_vec();
@@ -116,6 +125,9 @@ pub fn seeds() -> Vec<Vec<u8>> {
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
     packed.write_all(&plain).expect("it is memory");
     let packed = packed.finish().expect("it is memory");
-    let ways: [(u8, &[u8]); 5] = [(0, &bytes), (1, &plain), (2, &packed), (3, &plain), (4, &sectioned)];
+    // With the head as it is, packed, and the byte that says so.
+    let raw = [&((place - HEAD) as u32).to_le_bytes(), &content[HEAD..], &[1]].concat();
+    let ways: [(u8, &[u8]); 6] =
+        [(0, &bytes), (1, &plain), (2, &packed), (3, &plain), (4, &sectioned), (5, &raw)];
     ways.map(|(way, bytes)| [&[way], bytes].concat()).into()
 }

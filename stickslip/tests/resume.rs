@@ -911,6 +911,7 @@ fn a_disk_that_stands_still_is_told_of_and_does_not_hold_a_run_that_is_to_stop()
             assert!(path.ends_with("particles"));
             TOLD.fetch_add(1, Ordering::Relaxed);
         },
+        ..Patience::default()
     };
     let patient = RunOptions { patience, max_time: Some(Duration::from_millis(600)), ..options(&parts) };
     let mut simulation = stickslip::step::build(&scene).unwrap();

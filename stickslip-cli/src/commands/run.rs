@@ -319,7 +319,11 @@ impl How {
             source: Some(SceneSource { text: Some(loaded.source.text().to_owned()), ..source }),
             checkpoints: Checkpointing { every, at_end, keep: usize::from(self.keep_checkpoints) },
             max_time: self.max_time.0.map(|longest| longest.saturating_sub(self.begun.elapsed())),
-            patience: Patience { tell: tell_of_slow_disk, ..Patience::default() },
+            patience: Patience {
+                tell: tell_of_dead_disk,
+                tell_slow: tell_of_slow_disk,
+                ..Patience::default()
+            },
             ..RunOptions::new(&out)
         };
         let form = match self.progress {
@@ -405,8 +409,16 @@ fn balance(ranks: &[RankShare]) -> Vec<String> {
     [head].into_iter().chain((0..).zip(ranks).map(line)).chain([last]).collect()
 }
 
-/// Tells the user of a disk that takes nothing.
+/// Tells the user of a file that processes write together, and all wait for.
 fn tell_of_slow_disk(path: &Path, waited: Duration) {
+    let (path, waited) = (path.display(), waited.as_secs());
+    tell!(
+        "\nwarning: {path} is not written after {waited} s; all processes wait until it is, whatever they are asked"
+    );
+}
+
+/// Tells the user of a disk that takes nothing.
+fn tell_of_dead_disk(path: &Path, waited: Duration) {
     let (path, waited) = (path.display(), waited.as_secs());
     tell!(
         "\nwarning: the disk has taken nothing for {path} in {waited} s; the run waits for it, and Ctrl-C or --max-time \

@@ -53,8 +53,8 @@ struct Surface {
 enum Moved {
     /// With the pose of a rigid body.
     Rigidly(Skin),
-    /// With the particles of one that deforms, of these numbers.
-    ByParticles(CarriedSkin, Vec<u32>),
+    /// With the particles of one that deforms.
+    ByParticles(CarriedSkin, Carriers),
 }
 
 /// The surfaces at one time.
@@ -89,14 +89,12 @@ impl Observer for SurfacesObserver {
     fn observe(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
         self.frames.make_room()?;
-        let lost = view.removed();
-        let has_lost = |body: usize| lost.get(body).is_some_and(|lost| lost.count > 0);
-        let (snapshot, poses) = (answer(view, &Carriers::of(&self.surfaces, has_lost)), view.poses());
+        let (carriers, poses) = (answer(view, &CarriersQuestion::of(&self.surfaces)), view.poses());
         let spins: Vec<[[f64; 3]; 2]> = view.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
         let corners = self.surfaces.iter().map(|surface| surface.moved.skin().corners.len()).sum::<usize>();
         let (surfaces, labels) = (self.surfaces.clone(), self.labels.clone());
-        self.frames.push(time, snapshot.bytes() + CORNER_BYTES * corners, move |format| {
-            let parts = corners_of(&surfaces, &snapshot, (&poses, &spins));
+        self.frames.push(time, carriers.0.bytes() + CORNER_BYTES * corners, move |format| {
+            let parts = corners_of(&surfaces, &carriers, (&poses, &spins));
             labels.encode(parts, time, format)
         });
         self.schedule.recorded(time);
@@ -138,10 +136,11 @@ fn surfaces_of(scene: &Scene) -> Vec<Surface> {
             return Some(Surface { body: number, moved: Moved::Rigidly(skin) });
         }
         let skin = Skin::of(&body.shape, lattice.spacing, dimension, domain)?;
-        let reference = sites(&body.shape, &lattice, body.particles)?.map(|site| site.position).collect();
-        let carried = CarriedSkin::new(skin, reference, lattice.spacing);
-        let (carried, carriers) = carried.thinned();
-        Some(Surface { body: number, moved: Moved::ByParticles(carried, carriers) })
+        let reference: Vec<_> =
+            sites(&body.shape, &lattice, body.particles)?.map(|site| site.position).collect();
+        let of_all = reference.len();
+        let (carried, numbers) = CarriedSkin::new(skin, reference, lattice.spacing).thinned();
+        Some(Surface { body: number, moved: Moved::ByParticles(carried, Carriers { numbers, of_all }) })
     };
     let held = scene.outputs.snapshots.held(&scene.bodies);
     (0..scene.bodies.len()).into_par_iter().filter(|&body| held[body]).filter_map(surface).collect()
@@ -156,36 +155,46 @@ impl Moved {
     }
 }
 
-/// The particles that carry surfaces.
-#[derive(Clone, Serialize, Deserialize)]
-pub(super) struct Carriers(BTreeMap<u32, Vec<u32>>);
+/// The particles that carry the surface of a body.
+struct Carriers {
+    /// They ascend.
+    numbers: Vec<u32>,
+    /// How many particles the body has in all, before any is lost.
+    of_all: usize,
+}
 
-impl Carriers {
-    /// By body, those of surfaces whose bodies have lost none.
-    fn of(surfaces: &[Surface], has_lost: impl Fn(usize) -> bool) -> Self {
-        let carriers = surfaces.iter().filter(|surface| !has_lost(surface.body)).filter_map(|surface| {
-            match &surface.moved {
-                Moved::Rigidly(_) => None,
-                Moved::ByParticles(_, carriers) => Some((surface.body as u32, carriers.clone())),
-            }
+/// Where the particles that carry surfaces are now: by body, their numbers.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct CarriersQuestion(BTreeMap<u32, Vec<u32>>);
+
+impl CarriersQuestion {
+    fn of(surfaces: &[Surface]) -> Self {
+        let numbers = surfaces.iter().filter_map(|surface| match &surface.moved {
+            Moved::Rigidly(_) => None,
+            Moved::ByParticles(_, carriers) => Some((surface.body as u32, carriers.numbers.clone())),
         });
-        Carriers(carriers.collect())
+        CarriersQuestion(numbers.collect())
     }
 }
 
-impl Question for Carriers {
-    /// Those particles, without what laws remember.
-    type Answer = ParticleSnapshot;
+impl Question for CarriersQuestion {
+    /// Those particles, without what laws remember, and how many particles each of their bodies has.
+    type Answer = (ParticleSnapshot, BTreeMap<u32, usize>);
 
-    fn look(&self, view: &dyn View) -> ParticleSnapshot {
+    fn look(&self, view: &dyn View) -> Self::Answer {
+        let (all, mut counts) = (view.snapshot(), BTreeMap::new());
+        for body in all.body.iter().filter(|body| self.0.contains_key(body)) {
+            *counts.entry(*body).or_default() += 1;
+        }
         let wanted = |body: u32, number: u32| {
-            self.0.get(&body).is_some_and(|carriers| carriers.binary_search(&number).is_ok())
+            self.0.get(&body).is_some_and(|numbers| numbers.binary_search(&number).is_ok())
         };
-        ParticleSnapshot { history: Vec::new(), ..view.snapshot().only(wanted) }
+        (ParticleSnapshot { history: Vec::new(), ..all.only(wanted) }, counts)
     }
 
-    fn join(one: ParticleSnapshot, other: ParticleSnapshot) -> ParticleSnapshot {
-        ParticleSnapshot::merged(vec![one, other])
+    fn join((one, mut counts): Self::Answer, (other, others): Self::Answer) -> Self::Answer {
+        others.into_iter().for_each(|(body, count)| *counts.entry(body).or_default() += count);
+        (ParticleSnapshot::merged(vec![one, other]), counts)
     }
 
     fn asked(&self) -> Asked {
@@ -194,10 +203,10 @@ impl Question for Carriers {
 }
 
 /// Each surface as it is now: of rigid bodies by their poses, velocities and spins, of others by the particles that
-/// carry them, if all of these are there.
+/// carry them. Bodies that lost particles have none any more.
 fn corners_of(
     surfaces: &[Surface],
-    snapshot: &ParticleSnapshot,
+    (snapshot, counts): &(ParticleSnapshot, BTreeMap<u32, usize>),
     (poses, spins): (&[Option<Pose>], &[[[f64; 3]; 2]]),
 ) -> Vec<Corners> {
     let part = |surface: &Surface| -> Corners {
@@ -222,7 +231,8 @@ fn corners_of(
                 // Particles are in the order of bodies and numbers.
                 let first = snapshot.body.partition_point(|&other| (other as usize) < body);
                 let end = snapshot.body.partition_point(|&other| (other as usize) <= body);
-                if end - first != carriers.len() {
+                let count = counts.get(&(body as u32)).copied().unwrap_or_default();
+                if end - first != carriers.numbers.len() || count != carriers.of_all {
                     return Corners::default();
                 }
                 let of = first..end;
@@ -382,7 +392,7 @@ mod tests {
         }
         let surfaces = surfaces_of(&scene);
         let motions: Vec<_> = simulation.bodies().iter().map(|body| [body.velocity, body.spin]).collect();
-        let carriers = Carriers::of(&surfaces, |_| false).look(&*simulation);
+        let carriers = CarriersQuestion::of(&surfaces).look(&*simulation);
         let parts = corners_of(&surfaces, &carriers, (&simulation.poses(), &motions));
         let corners = joined(parts.clone());
         let mut first = 0;
@@ -465,8 +475,8 @@ mod tests {
         let simulation = stickslip_engine::step::build(&scene).unwrap();
         let surfaces = surfaces_of(&scene);
         let (poses, motions) = (simulation.poses(), vec![[[0.0; 3]; 2]; 2]);
-        let carriers = |lost: usize| Carriers::of(&surfaces, |body| body == lost).look(&*simulation);
-        let whole = joined(corners_of(&surfaces, &carriers(usize::MAX), (&poses, &motions)));
+        let mut carriers = CarriersQuestion::of(&surfaces).look(&*simulation);
+        let whole = joined(corners_of(&surfaces, &carriers, (&poses, &motions)));
         // The normals of the triangles look out of the ball.
         let ball = |triangle: &&[u32; 3]| whole.body[triangle[0] as usize] == 0;
         for triangle in whole.triangles.iter().filter(ball) {
@@ -478,7 +488,9 @@ mod tests {
         let mut one = scene.clone();
         one.outputs.snapshots.bodies = Some(vec!["cube".to_string()]);
         assert_eq!(surfaces_of(&one).iter().map(|surface| surface.body).collect::<Vec<_>>(), [1]);
-        let left = joined(corners_of(&surfaces, &carriers(0), (&poses, &motions)));
+        // One of the ball that carries none of its surface.
+        carriers.1.entry(0).and_modify(|count| *count -= 1);
+        let left = joined(corners_of(&surfaces, &carriers, (&poses, &motions)));
         assert!(left.body.iter().all(|&body| body == 1) && !left.body.is_empty());
         assert!(left.triangles.iter().flatten().all(|&corner| (corner as usize) < left.position.len()));
     }

@@ -17,6 +17,8 @@ pub struct Patience {
     pub given_up_after: Duration,
     /// Tells the user which file or folder is waited for, and for how long so far.
     pub tell: fn(&Path, Duration),
+    /// Tells the user which file is not written yet, for which the run waits whatever it is asked, and after how long.
+    pub tell_slow: fn(&Path, Duration),
 }
 
 impl Default for Patience {
@@ -26,6 +28,7 @@ impl Default for Patience {
             told_after: Duration::from_secs(30),
             given_up_after: Duration::from_secs(10),
             tell: |_, _| {},
+            tell_slow: |_, _| {},
         }
     }
 }
@@ -53,28 +56,23 @@ impl Waiting {
         Waiting { patience, stop, until, ..Waiting::default() }
     }
 
-    /// Writes a file or a folder by a thread that cannot be left, while another looks after the clock: the user is told
-    /// of a disk that takes nothing, but the run waits for it, whatever it is asked.
+    /// Writes a file by a thread that cannot be left, while another looks after the clock: the user is told if it takes
+    /// long, but the run waits for it, whatever it is asked.
     pub fn watch<X>(&self, path: &Path, write: impl FnOnce() -> X) -> X {
         let (written, done) = channel::<()>();
-        let since = Instant::now();
+        let Patience { told_after, tell_slow, .. } = self.patience;
         std::thread::scope(|scope| {
-            scope.spawn(move || {
-                while done.recv_timeout(LOOK_UP) == Err(RecvTimeoutError::Timeout) {
-                    self.tell(path, since.elapsed());
+            let watcher = move || {
+                if done.recv_timeout(told_after) == Err(RecvTimeoutError::Timeout) {
+                    tell_slow(path, told_after);
                 }
-            });
+            };
+            // Where the system gives no thread, nobody watches.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, watcher);
             let result = write();
             drop(written);
             result
         })
-    }
-
-    /// Tells the user of a file or a folder that was waited for that long, once.
-    fn tell(&self, path: &Path, waited: Duration) {
-        if waited >= self.patience.told_after && !self.told.swap(true, Ordering::Relaxed) {
-            (self.patience.tell)(path, waited);
-        }
     }
 
     /// Looks up from waiting for a file or a folder, into which nothing went since then.
@@ -83,7 +81,9 @@ impl Waiting {
     /// The run is to stop, and has waited long enough.
     pub(super) fn look_up(&self, path: &Path, since: Instant) -> Result<(), OutputError> {
         let waited = since.elapsed();
-        self.tell(path, waited);
+        if waited >= self.patience.told_after && !self.told.swap(true, Ordering::Relaxed) {
+            (self.patience.tell)(path, waited);
+        }
         let stops =
             self.stop.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() >= until);
         let longest = match self.given_up.load(Ordering::Relaxed) {
@@ -97,5 +97,34 @@ impl Waiting {
         let told =
             format!("the disk has taken nothing for {:.0} s, and the run was to stop", waited.as_secs_f64());
         Err(OutputError::at(path)(io::Error::new(io::ErrorKind::TimedOut, told)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::AtomicUsize;
+
+    /// Once, if it takes long; whoever writes is waited for.
+    #[test]
+    fn what_takes_long_is_told_of() {
+        static TOLD: AtomicUsize = AtomicUsize::new(0);
+        let patience = Patience {
+            told_after: Duration::from_millis(50),
+            tell_slow: |path, _| {
+                assert_eq!(path, Path::new("slow"));
+                TOLD.fetch_add(1, Ordering::Relaxed);
+            },
+            ..Patience::default()
+        };
+        let waiting = Waiting::new(patience, Arc::default(), None);
+        assert_eq!(waiting.watch(Path::new("fast"), || 1), 1);
+        assert_eq!(TOLD.load(Ordering::Relaxed), 0);
+        let write = || {
+            std::thread::sleep(Duration::from_millis(300));
+            2
+        };
+        assert_eq!(waiting.watch(Path::new("slow"), write), 2);
+        assert_eq!(TOLD.load(Ordering::Relaxed), 1);
     }
 }

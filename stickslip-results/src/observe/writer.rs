@@ -293,6 +293,7 @@ mod tests {
                 assert!(path == Path::new("slow") && waited >= Duration::from_millis(60));
                 TOLD.fetch_add(1, Ordering::Relaxed);
             },
+            ..Patience::default()
         };
         let stop = Arc::new(AtomicBool::new(false));
         let waiting = Arc::new(Waiting::new(patience, stop.clone(), None));

@@ -4,7 +4,7 @@ use super::{Home, read_particles, write_particles};
 use crate::basis::Basis;
 use crate::door::{NotTakenUp, RestoreError, SavedShare, SavedState};
 use crate::lanes::Laned;
-use crate::ranks::{Message, Partition, Ranks, combined, gathered};
+use crate::ranks::{Message, Partition, Ranks, combined, gathered, message_to};
 use crate::scene::Scene;
 use crate::step::Engine;
 use crate::step::build::walk;
@@ -91,6 +91,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
 
+        first_problem(&*ranks, self.find_twins(&*ranks, rest).map_err(NotTakenUp::from))?;
+
         let block = |at: &[i32]| std::array::from_fn(|k| at[k]);
         let own: Vec<(Vec<i32>, u64)> = loads.into_iter().map(|(at, load)| (at.to_vec(), load)).collect();
         let loads = gathered(&*ranks, &own).concat();
@@ -108,6 +110,32 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.state.contact_sums.keep(|bodies| among.keeps(bodies));
         self.send_home();
         first_problem(&*ranks, self.check_starts(scene).map_err(NotTakenUp::from))
+    }
+
+    /// Looks for particles that are numbered twice on different ranks, of bodies of which it is not known which numbers
+    /// there must be: each rank sees to some numbers.
+    fn find_twins(&self, ranks: &dyn Ranks, rest: &SavedState) -> Result<(), RestoreError> {
+        let mut messages: Vec<Message> = Vec::new();
+        let mut seen: Vec<[u32; 2]> = Vec::new();
+        let some = self.state.bodies.iter().zip(&self.settings.filled).zip(&rest.bodies).zip(0..);
+        for (((body, &filled), saved), i) in some {
+            let numbers = body.particles.numbers().iter().filter(|_| filled == 0 || saved.missing > 0);
+            for &number in numbers {
+                match number as usize % ranks.count() {
+                    rank if rank == ranks.rank() => seen.push([i, number]),
+                    rank => message_to(&mut messages, rank)
+                        .extend([i, number].map(u32::to_le_bytes).as_flattened()),
+                }
+            }
+        }
+        for (_, message) in ranks.exchange(messages) {
+            let (numbers, _) = message.as_chunks();
+            seen.extend(numbers.as_chunks().0.iter().map(|two: &[[u8; 4]; 2]| two.map(u32::from_le_bytes)));
+        }
+        seen.sort_unstable();
+        let Some(twins) = seen.windows(2).find(|two| two[0] == two[1]) else { return Ok(()) };
+        let name = &self.state.bodies[twins[0][0] as usize].name;
+        Err(RestoreError(format!("body `{name}` has particles that are numbered twice")))
     }
 
     /// Sends all particles to the ranks that own their blocks, some at a time.

@@ -6,7 +6,7 @@ use crate::observe::arrivals::{Furthest, MassMean};
 use crate::observe::fronts::FrontQuestion;
 use crate::observe::points::PointsQuestion;
 use crate::observe::sections::SectionCut;
-use crate::observe::surfaces::Carriers;
+use crate::observe::surfaces::CarriersQuestion;
 use crate::ranks::{Ranks, bytes_of, combined, read};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub(in crate::observe) enum Asked {
     Front(FrontQuestion),
     Points(PointsQuestion),
     Section(SectionCut),
-    Carriers(Carriers),
+    Carriers(CarriersQuestion),
     Near(Near),
 }
 

@@ -242,10 +242,10 @@ impl PointArrays {
                 packed.extend(blocks);
                 continue;
             }
-            free = offset + size_of::<u64>() + total;
             let (size, bytes) = bytes.split_first_chunk().ok_or_else(cut)?;
             let whole = bytes.get(..total).filter(|_| u64::from_le_bytes(*size) == total as u64);
             read_all.push(read(whole.ok_or_else(cut)?));
+            free = offset + size_of::<u64>() + total;
         }
         let unpacked: Option<Vec<R>> = packed
             .into_par_iter()
