@@ -117,8 +117,11 @@ def test_a_file_in_pieces_is_opened(tmp_path: Path, read: Callable[[Path], Found
     points, cells, arrays = read(path)
     frame = ss.Results(tmp_path / "results").frame(1)
     assert len(points) == 90000 and np.array_equal(arrays["number"].ravel(), np.arange(90000))
-    assert np.array_equal(points, frame["position"]) and np.array_equal(cells["vertex"].ravel(), np.arange(90000))
+    assert np.array_equal(points, frame["position"])
     assert np.array_equal(arrays["stress"].reshape(-1, 6), frame["stress"])
+    # Of cells meshio keeps those of the last piece.
+    first = 65536 if read is by_meshio else 0
+    assert np.array_equal(cells["vertex"].ravel(), np.arange(first, 90000))
 
 
 @pytest.mark.parametrize("read", READERS)
