@@ -591,7 +591,7 @@ fn any_number_of_processes_reproduces_the_paper() {
 }
 
 /// What MPI takes for itself in each process, and what of particles is on its way at a time [bytes].
-const OF_MPI: f64 = 70e6;
+const OF_MPI: f64 = 40e6;
 /// How much more than its share of the particles' memory a rank may have.
 const ALLOWED: f64 = 1.2;
 
