@@ -67,6 +67,11 @@ impl ExactSum {
         }
     }
 
+    /// Merges sums that belong together with others, one by one.
+    pub fn merge_each(sums: &mut [ExactSum], others: &[ExactSum]) {
+        sums.iter_mut().zip(others).for_each(|(sum, other)| sum.merge(other));
+    }
+
     /// Adds another sum.
     pub fn merge(&mut self, other: &ExactSum) {
         let mut other = other.clone();

@@ -41,13 +41,6 @@ pub struct Program {
 /// See [`Program::find`].
 pub type Finding = fn(&dyn Ranks, &[u8], &mut dyn FnMut(Vec<SavedShare>)) -> Result<(), String>;
 
-impl Default for Program {
-    /// Can do nothing.
-    fn default() -> Self {
-        Program { act: |_, _, _| Vec::new(), find: |_, _, _| Err("nobody knows how".to_string()) }
-    }
-}
-
 /// The simulation of a scene, which other ranks share; they [`follow`] until it is dropped.
 ///
 /// # Errors

@@ -242,6 +242,35 @@ pub struct SavedShare {
     pub columns: Vec<SavedColumn>,
 }
 
+impl SavedShare {
+    /// Deals out particles of which bodies have so many, body by body and at most so many at a time: `share` gives some
+    /// of a body by their places in memory.
+    ///
+    /// # Errors
+    /// Those of who takes them.
+    pub fn deal<E>(
+        counts: impl IntoIterator<Item = usize>,
+        most: usize,
+        share: impl Fn(usize, Range<usize>) -> SavedShare,
+        take: &mut dyn FnMut(Vec<SavedShare>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (mut shares, mut room) = (Vec::new(), most);
+        for (body, count) in counts.into_iter().enumerate() {
+            let mut first = 0;
+            while first < count {
+                let end = count.min(first + room);
+                shares.push(share(body, first..end));
+                (first, room) = (end, room - (end - first));
+                if room == 0 {
+                    take(std::mem::take(&mut shares))?;
+                    room = most;
+                }
+            }
+        }
+        if shares.is_empty() { Ok(()) } else { take(shares) }
+    }
+}
+
 impl SavedBody {
     /// Some of its particles, which is the body at this place in the scene.
     pub fn share(&self, body: usize, particles: Range<usize>) -> SavedShare {

@@ -140,6 +140,6 @@ pub fn add_up(ranks: &dyn Ranks, sums: &mut Vec<ExactSum>) {
 
 /// Sums that belong together, added.
 pub fn joined(mut sums: Vec<ExactSum>, others: Vec<ExactSum>) -> Vec<ExactSum> {
-    sums.iter_mut().zip(&others).for_each(|(sum, other)| sum.merge(other));
+    ExactSum::merge_each(&mut sums, &others);
     sums
 }

@@ -19,6 +19,7 @@ use crate::scene::{ContactLaw, StartVelocities, Transfer};
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{SETTLES_EVERY, columns as columns_of};
 use std::collections::HashMap;
+use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::Mutex;
 
@@ -35,23 +36,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// The particles of the state, body by body, at most so many at a time.
     pub(super) fn share_out(&self, most: usize, take: &mut dyn FnMut(Vec<SavedShare>)) {
-        let (mut shares, mut room) = (Vec::new(), most);
-        for (body, Body { particles, .. }) in self.state.bodies.iter().enumerate() {
-            let mut first = 0;
-            while first < particles.len() {
-                let end = particles.len().min(first + room);
-                let columns = columns_of_some(particles, first..end).collect();
-                shares.push(SavedShare { body, numbers: particles.numbers()[first..end].to_vec(), columns });
-                (first, room) = (end, room - (end - first));
-                if room == 0 {
-                    take(std::mem::take(&mut shares));
-                    room = most;
-                }
-            }
-        }
-        if !shares.is_empty() {
+        let bodies = &self.state.bodies;
+        let share = |body: usize, some: Range<usize>| {
+            let particles = &bodies[body].particles;
+            let columns = columns_of_some(particles, some.clone()).collect();
+            SavedShare { body, numbers: particles.numbers()[some].to_vec(), columns }
+        };
+        let mut take = |shares| {
             take(shares);
-        }
+            Ok(())
+        };
+        let counts = bodies.iter().map(|body| body.particles.len());
+        let Ok(()) = SavedShare::deal::<Infallible>(counts, most, share, &mut take);
     }
 
     /// The state without particles.

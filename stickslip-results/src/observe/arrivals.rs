@@ -330,7 +330,7 @@ impl Question for MassMean {
     }
 
     fn join(mut one: Self::Answer, other: Self::Answer) -> Self::Answer {
-        one.iter_mut().zip(&other).for_each(|(sum, other)| sum.merge(other));
+        ExactSum::merge_each(&mut one, &other);
         one
     }
 

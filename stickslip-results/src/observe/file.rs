@@ -194,6 +194,14 @@ pub(super) fn replace_for_good(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
     put(path, true, write)?;
+    secure_name(path)
+}
+
+/// Waits until the name of a file is on the disk.
+///
+/// # Errors
+/// The disk refuses.
+pub(super) fn secure_name(path: &Path) -> Result<(), OutputError> {
     match path.parent() {
         // A name alone lies in the folder where the program runs.
         Some(folder) if folder.as_os_str().is_empty() => secure(Path::new(".")),
@@ -206,8 +214,8 @@ fn put(
     flushed: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<FileSum, OutputError> {
-    let part = part_of(path);
-    let written = File::create(&part).and_then(|file| {
+    replace_by(path, |part| {
+        let file = File::create(part)?;
         let mut file = BufWriter::with_capacity(1 << 18, SummedFile::new(file));
         write(&mut file)?;
         let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -215,8 +223,19 @@ fn put(
             file.inner.sync_all()?;
         }
         Ok(file.sum())
-    });
-    written.and_then(|sum| fs::rename(&part, path).map(|()| sum)).map_err(|source| {
+    })
+}
+
+/// The same of a file that `write` makes under that other name.
+///
+/// # Errors
+/// As [`replace`].
+pub(super) fn replace_by<X>(
+    path: &Path,
+    write: impl FnOnce(&Path) -> io::Result<X>,
+) -> Result<X, OutputError> {
+    let part = part_of(path);
+    write(&part).and_then(|made| fs::rename(&part, path).map(|()| made)).map_err(|source| {
         // The first error is the one to report; a part that cannot be removed either is cleared by the next run.
         let _ = fs::remove_file(&part);
         OutputError { path: path.to_path_buf(), source }

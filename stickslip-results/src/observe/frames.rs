@@ -2,7 +2,7 @@
 //! table.
 
 use super::file::{
-    FileSum, OutputError, ReadError, ReadProblem, is_there, part_of, read_bytes, remove_from, replace,
+    FileSum, OutputError, ReadError, ReadProblem, is_there, read_bytes, remove_from, replace, replace_by,
     replace_summed, secure,
 };
 use super::folder::OutputFolder;
@@ -127,14 +127,7 @@ impl Frames {
         write: impl FnOnce(&Path) -> io::Result<FileSum>,
     ) -> Result<(), OutputError> {
         let path = self.writer.ask(move |series| Ok(series.next_path(time)))?;
-        let part = part_of(&path);
-        let written = self.writer.waiting().watch(&path, || write(&part));
-        let written = written.and_then(|sum| fs::rename(&part, &path).map(|()| sum));
-        let sum = written.map_err(|source| {
-            // As of any file that is replaced.
-            let _ = fs::remove_file(&part);
-            OutputError { path, source }
-        })?;
+        let sum = replace_by(&path, |part| self.writer.waiting().watch(&path, || write(part)))?;
         self.writer.ask(move |series| series.list(time, sum))
     }
 

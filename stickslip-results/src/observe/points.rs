@@ -257,9 +257,9 @@ impl WeightedSum {
     /// Adds the sums over others.
     fn merge(&mut self, other: &WeightedSum) {
         self.weight.merge(&other.weight);
-        let vectors = self.position.iter_mut().zip(&other.position);
-        let vectors = vectors.chain(self.velocity.iter_mut().zip(&other.velocity));
-        vectors.chain(self.stress.iter_mut().zip(&other.stress)).for_each(|(sum, other)| sum.merge(other));
+        ExactSum::merge_each(&mut self.position, &other.position);
+        ExactSum::merge_each(&mut self.velocity, &other.velocity);
+        ExactSum::merge_each(&mut self.stress, &other.stress);
     }
 
     /// The mean; `None` of nothing.

@@ -153,7 +153,7 @@ impl Question for SectionCut {
     }
 
     fn join(mut one: Self::Answer, other: Self::Answer) -> Self::Answer {
-        one.iter_mut().zip(&other).for_each(|(sum, other)| sum.merge(other));
+        ExactSum::merge_each(&mut one, &other);
         one
     }
 

@@ -18,7 +18,7 @@ pub(super) use sections::{MOST_PARTICLES, Section};
 
 use super::CHECKPOINTS;
 use super::file::{
-    OutputError, ReadError, ReadProblem, open_file, part_of, read_bytes, replace_for_good, secure,
+    OutputError, ReadError, ReadProblem, open_file, read_bytes, replace_by, replace_for_good, secure_name,
 };
 use super::folder::OutputFolder;
 use super::memory::{Memory, Values};
@@ -127,20 +127,14 @@ impl Checkpoint {
         (path, form): (&Path, CheckpointForm),
         simulation: &dyn Simulation,
     ) -> Result<(), OutputError> {
-        let part = part_of(path);
-        let ended = shared::write_sections(simulation, (&part, form)).and_then(|sections| {
-            let mut file = OpenOptions::new().write(true).open(&part)?;
+        replace_by(path, |part| {
+            let sections = shared::write_sections(simulation, (part, form))?;
+            let mut file = OpenOptions::new().write(true).open(part)?;
             file.seek(SeekFrom::Start(sections.last().map_or(START as u64, Section::end)))?;
             self.write_head(&mut file, (sections, form))?;
-            file.sync_all()?;
-            fs::rename(&part, path)
-        });
-        ended.map_err(|source| {
-            // As of any file that is replaced.
-            let _ = fs::remove_file(&part);
-            OutputError { path: path.to_path_buf(), source }
+            file.sync_all()
         })?;
-        secure(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
+        secure_name(path)
     }
 
     /// Writes the head behind sections.

@@ -44,20 +44,9 @@ impl Sections {
         state: &SavedState,
         take: &mut dyn FnMut(Vec<SavedShare>) -> io::Result<()>,
     ) -> io::Result<()> {
-        let (mut shares, mut room) = (Vec::new(), MOST_PARTICLES);
-        for (number, body) in state.bodies.iter().enumerate() {
-            let mut first = 0;
-            while first < body.numbers.len() {
-                let end = body.numbers.len().min(first + room);
-                shares.push(body.share(number, first..end));
-                (first, room) = (end, room - (end - first));
-                if room == 0 {
-                    take(std::mem::take(&mut shares))?;
-                    room = MOST_PARTICLES;
-                }
-            }
-        }
-        if shares.is_empty() { Ok(()) } else { take(shares) }
+        let counts = state.bodies.iter().map(|body| body.numbers.len());
+        let share = |body: usize, some| state.bodies[body].share(body, some);
+        SavedShare::deal(counts, MOST_PARTICLES, share, take)
     }
 
     /// The bytes of the next one.
