@@ -5,6 +5,7 @@ use super::tables::{self, axis};
 use super::{Chart, Curve, Panel};
 use crate::drawing::{Rgb, body_color};
 use clap::ValueEnum;
+use std::collections::HashMap;
 use stickslip::door::BodyState;
 use stickslip::observe::{BodyRow, EnergyRow, ReadError, ReferenceCurve, Results, TableRow};
 use stickslip::scene::{NamePattern, is_pattern};
@@ -211,17 +212,18 @@ fn sums(rows: &[BodyRow], pattern: &str) -> Vec<BodyRow> {
 
 fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> Vec<Panel> {
     let mut panels: Vec<Panel> = Vec::new();
+    let rows = by_body(rows);
     for (i, each) in shown.iter().enumerate() {
         let (name, unit) = axis(&each.quantity);
         let place = panels.iter().position(|panel| panel.name == name).unwrap_or_else(|| {
             panels.push(Panel { name: name.to_owned(), unit, curves: Vec::new() });
             panels.len() - 1
         });
-        let earlier =
-            shown[..i].iter().any(|before| before.body == each.body && axis(&before.quantity).0 == name);
+        let of_body = shown[..i].iter().rev().take_while(|before| before.body == each.body);
+        let earlier = of_body.into_iter().any(|before| axis(&before.quantity).0 == name);
         let color = body_color(if earlier { each.number + i } else { each.number });
         let curves = &mut panels[place].curves;
-        curves.push(curve(rows, each, color));
+        curves.push(curve(&rows, each, color));
         if let Some(reference) = reference(references, each) {
             let label = reference.label.clone();
             curves.push(Curve { label, color: EXACT, dashed: true, points: reference.points.clone() });
@@ -230,8 +232,15 @@ fn panels(rows: &[BodyRow], references: &[ReferenceCurve], shown: &[Shown]) -> V
     panels
 }
 
-fn curve(rows: &[BodyRow], shown: &Shown, color: Rgb) -> Curve {
-    let rows = rows.iter().filter(|row| row.body == shown.body);
+/// The rows of each body, in their order.
+fn by_body(rows: &[BodyRow]) -> HashMap<&str, Vec<&BodyRow>> {
+    let mut by_body: HashMap<&str, Vec<&BodyRow>> = HashMap::new();
+    rows.iter().for_each(|row| by_body.entry(&row.body).or_default().push(row));
+    by_body
+}
+
+fn curve(rows: &HashMap<&str, Vec<&BodyRow>>, shown: &Shown, color: Rgb) -> Curve {
+    let rows = rows.get(&*shown.body).into_iter().flatten();
     let points = rows.filter_map(|row| Some([row.time, row.number(&shown.quantity)?]));
     Curve {
         label: format!("{} {}", shown.body, shown.quantity),
@@ -343,9 +352,10 @@ fn energy_panels(rows: &[EnergyRow], columns: &[String]) -> Vec<Panel> {
 
 /// The coordinates of the bodies' centres that change most, as the way they went.
 fn center_panel(rows: &[BodyRow], bodies: &[String]) -> Panel {
+    let rows = by_body(rows);
     let way = |(number, body): (usize, &String), quantity: &str| {
         let shown = Shown { body: body.clone(), number, quantity: quantity.to_owned() };
-        let mut curve = curve(rows, &shown, body_color(number));
+        let mut curve = curve(&rows, &shown, body_color(number));
         let start = curve.points.first().map_or(0.0, |point| point[1]);
         curve.points.iter_mut().for_each(|point| point[1] -= start);
         let most = curve.points.iter().map(|point| point[1].abs()).fold(0.0, f64::max);

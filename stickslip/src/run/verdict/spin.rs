@@ -1,7 +1,7 @@
 //! Angular momentum lost or gained where no torque acts.
 
 use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
-use crate::door::BodyState;
+use crate::door::{BodyState, WrittenValues};
 use crate::observe::{Memory, OutputError};
 use crate::scene::{Face, HealthCheck, Scene, Transfer};
 use crate::tensor::cross;
@@ -77,8 +77,9 @@ impl Check for SpinCheck {
         }
         let touched: BTreeSet<usize> =
             look.simulation.patches().iter().flat_map(|patch| [patch.body_a, patch.body_b]).collect();
+        let written = look.simulation.written();
         self.alone.retain(|alone| {
-            alone.body < look.bodies.len() && !touched.contains(&alone.body) && alone.unpushed(look)
+            alone.body < look.bodies.len() && !touched.contains(&alone.body) && alone.unpushed(look, &written)
         });
         let mut findings: Vec<_> = self.alone.iter().filter_map(|alone| alone.look(look)).collect();
         findings.extend(self.together.as_mut().and_then(|together| together.look(look)));
@@ -96,11 +97,18 @@ impl Check for SpinCheck {
 impl SpinCheck {
     fn begin(&mut self, look: &CheckInputs) {
         self.begun = true;
-        let time = look.simulation.time();
+        let (time, written) = (look.simulation.time(), look.simulation.written());
         let alone = |body: usize| {
             let state = &look.bodies[body];
             let (mass, velocity) = (state.mass, state.velocity);
-            Alone { body, mass, velocity, angular_momentum: own(state), time, written: writes(look, body) }
+            Alone {
+                body,
+                mass,
+                velocity,
+                angular_momentum: own(state),
+                time,
+                written: writes(&written, body),
+            }
         };
         let pushed = |&body: &usize| look.scene.loads.iter().any(|load| load.body == body);
         // One that is joined to its own images turns against them.
@@ -123,8 +131,8 @@ fn isolated(scene: &Scene) -> bool {
 }
 
 /// How often values were written to a body between steps.
-fn writes(look: &CheckInputs, body: usize) -> u64 {
-    look.simulation.written().get(body).map_or(0, |written| written.count)
+fn writes(written: &[WrittenValues], body: usize) -> u64 {
+    written.get(body).map_or(0, |written| written.count)
 }
 
 /// Angular momentum about the body's own centre of mass [kg m^2/s].
@@ -133,11 +141,11 @@ fn own(state: &BodyState) -> [f64; 3] {
 }
 
 impl Alone {
-    fn unpushed(&self, look: &CheckInputs) -> bool {
+    fn unpushed(&self, look: &CheckInputs, written: &[WrittenValues]) -> bool {
         let Some(gravity) = look.scene.gravity.constant() else { return false };
         let state = &look.bodies[self.body];
         // What left the domain took its spin along, and what was written brings its own.
-        if state.mass < self.mass || writes(look, self.body) != self.written {
+        if state.mass < self.mass || writes(written, self.body) != self.written {
             return false;
         }
         let fallen = look.simulation.time() - self.time;
