@@ -347,7 +347,7 @@ impl Part {
     }
 
     fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Result<(), NotTakenUp> {
-        let empty = step::build_empty(&self.scene, self.path);
+        let empty = step::build_empty(&self.scene, self.path, &*self.ranks);
         // What it began with goes first.
         self.own = empty.map_err(|problem| RestoreError::new(problem.to_string()))?;
         let (ranks, find) = (&*self.ranks, self.program.find);

@@ -32,6 +32,19 @@ pub fn each<X: Send>(entries: &mut [X], size: usize, work: impl Fn(usize, &mut X
     });
 }
 
+/// The same to those entries whose places are listed, which ascend.
+#[inline]
+pub fn each_of<X: Send>(entries: &mut [X], places: &[u32], size: usize, work: impl Fn(usize, &mut X) + Sync) {
+    assert!(places.is_sorted_by(|a, b| a < b), "every place is listed once");
+    let entries = Disjoint::new(entries);
+    each_range(places.len(), size, &|range| {
+        for &place in &places[range] {
+            // SAFETY: every place is listed once, and lies in one range.
+            work(place as usize, unsafe { entries.get(place as usize) });
+        }
+    });
+}
+
 /// What comes of the parts of `0..count`, in their order.
 pub fn by_parts<R: Default + Clone + Send>(
     count: usize,
@@ -60,6 +73,9 @@ mod tests {
             let mut entries = vec![0; count];
             each(&mut entries, size, |i, entry| *entry += i);
             assert_eq!(entries, (0..count).collect::<Vec<_>>());
+            let odd: Vec<u32> = (0..count as u32).filter(|place| place % 2 == 1).collect();
+            each_of(&mut entries, &odd, size, |i, entry| *entry -= i);
+            assert_eq!(entries, (0..count).map(|i| if i % 2 == 1 { 0 } else { i }).collect::<Vec<_>>());
             let sums = by_parts(count, size, |range| range.sum::<usize>());
             assert_eq!(sums.iter().sum::<usize>(), (0..count).sum::<usize>());
         }

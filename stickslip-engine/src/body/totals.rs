@@ -8,10 +8,11 @@ use crate::natural::{self, Natural};
 use crate::particles::{ColumnStart, Columns, deformation_entries, spin_entries, stress_entries};
 use crate::tensor::{Matrix, Real, Symmetric, cross};
 use crate::threads::by_parts;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Sums over the particles of one body, in `f64` and SI units whatever the precision.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
     /// sum m [kg]
     pub mass: f64,

@@ -7,6 +7,9 @@ use crate::scene::Face;
 use crate::tensor::{Matrix, Real, Vector};
 use crate::transfer::offsets;
 
+/// Nodes along an axis that a particle reaches which is a point to its functions.
+const WIDTH_OF_POINTS: usize = 2;
+
 /// A node or one of its mirror images, with the signs that turn vectors between the two.
 struct MirroredNode<T, const D: usize> {
     node: [i32; D],
@@ -14,8 +17,8 @@ struct MirroredNode<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Near<'_, T, D> {
-    /// Calls `f(arm, particle, mirror)` for every particle of a body whose box reaches into the cells around a node:
-    /// `arm` from the node to it [m], `mirror` turns its vectors into those that the node sees.
+    /// Calls `f(arm, particle, mirror)` for every particle of a body that reaches a node, itself or with its box: `arm`
+    /// from the node to it [m], `mirror` turns its vectors into those that the node sees.
     pub fn around(
         &self,
         body: usize,
@@ -32,14 +35,18 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 (true, false) => T::ONE,
                 _ => T::ZERO,
             });
-            for offset in offsets::<D>(self.lattice.most_reached()) {
+            for offset in offsets::<D>(self.width) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.active.particles_in(body, cell) {
                     let particles = &self.bodies[body].particles;
                     let particle = &particles.get(index as usize);
                     let arm = particle.position - seen;
                     let sides = particles.half_sides(index as usize);
-                    let reach = |i: usize| self.lattice.cell + self.lattice.half_box(sides[i]);
+                    let half_box = |i: usize| match self.width {
+                        WIDTH_OF_POINTS => T::ZERO,
+                        _ => self.lattice.half_box(sides[i]),
+                    };
+                    let reach = |i: usize| self.lattice.cell + half_box(i);
                     if (0..D).all(|i| arm[i].abs() < reach(i)) {
                         f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
                     }
@@ -50,7 +57,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
 
     /// A node and its images in the mirrors near it, each mirror turning around all that those before it gave.
     fn images(&self, node: [i32; D]) -> impl Iterator<Item = MirroredNode<T, D>> {
-        let (walls, reach) = (&self.boundary.walls, self.lattice.most_reached() as i32);
+        let (walls, reach) = (&self.boundary.walls, self.width as i32);
         let near = walls.iter().filter(move |wall| wall.face == Face::Symmetry && wall.depth(node) < reach);
         (0..1_usize << near.clone().count()).map(move |turned| {
             let mut image = MirroredNode { node, sign: [T::ONE; D] };

@@ -196,6 +196,8 @@ pub struct Near<'a, T, const D: usize> {
     pub rules: &'a Rules<T>,
     /// Step [s], if the nodes have the forces of the stress already.
     pub ahead: Option<T>,
+    /// Nodes that a particle reaches along an axis, at most.
+    pub width: usize,
     /// Who looks.
     pub processor: Processor,
 }

@@ -8,6 +8,7 @@ mod saved;
 mod snapshot;
 
 pub use crate::particles::{ColumnPlace, NumberFormat};
+pub use crate::ranks::RankShare;
 pub use column::{ColumnRef, NoColumn, WRITABLE, WriteError};
 pub(crate) use saved::SavedUnbounded;
 pub use saved::{NotTakenUp, RestoreError, SavedBody, SavedColumn, SavedShare, SavedState};
@@ -16,7 +17,6 @@ pub use snapshot::{ColumnSource, ParticleSnapshot, SnapshotColumn};
 use crate::column::ColumnDescription;
 use crate::outside::OutsideFault;
 use crate::particles::by_number;
-use crate::ranks::SentAndWaited;
 use crate::rigid::Pose;
 use crate::scene::StartVelocities;
 use serde::{Deserialize, Serialize};
@@ -600,19 +600,6 @@ pub struct TracedParticle {
     pub velocity: [f64; 3],
     /// Deformation gradient, row by row [-].
     pub deformation: [[f64; 3]; 3],
-}
-
-/// What a rank has of a simulation, and what it did for it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RankShare {
-    /// Its particles now.
-    pub particles: usize,
-    /// Steps of which it did its part.
-    pub steps: u64,
-    /// Wall time in steps without waiting for other ranks [s].
-    pub computed: f64,
-    /// What it sent in steps, and how long it waited for others there.
-    pub traffic: SentAndWaited,
 }
 
 /// Grid nodes with mass as columns of equal length, ordered by body and place; a node that two bodies share stands

@@ -8,7 +8,7 @@ use super::border::{Border, ForeignTile, Mirrors, Traffic};
 use super::cell_list::{CellList, GuestList, block_of, corner_block, key, reached_blocks};
 use super::{Nodes, Periods, cells_at, cells_reaching, locate, nodes_per_block};
 use crate::ranks::{Message, message_to};
-use crate::threads::each;
+use crate::threads::each_of;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -21,6 +21,8 @@ pub struct Tile<const D: usize> {
     pub block: [i32; D],
     /// Its number among the body's tiles.
     pub number: usize,
+    /// Place of the body among those that are here.
+    pub place: usize,
     /// Field slots of the blocks at `block` + {0, 1}^D, the last axis fastest;
     /// that of the home where particles do not reach so far.
     pub slots: [u32; 8],
@@ -39,6 +41,12 @@ pub struct SharedBlock<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub struct ActiveBlocks<const D: usize> {
     cell_lists: Vec<CellList>,
+    /// Bodies that have particles or blocks here, in their order: of several ranks, none looks at any others in a step.
+    here: Vec<u32>,
+    /// Bodies of which particles have come that may not be listed there yet.
+    newcomers: Vec<u32>,
+    /// Bodies that have guests.
+    hosts: Vec<u32>,
     /// Tiles of all bodies, by body and block.
     pub tiles: Vec<Tile<D>>,
     /// Indices of the tiles of small bodies, by body and colour.
@@ -57,10 +65,6 @@ pub struct ActiveBlocks<const D: usize> {
     mirrors: Mirrors,
     /// Body and block of each field slot.
     pub slots: Vec<(u32, [i32; D])>,
-    /// First slot of each body, and the number of slots.
-    first_slot: Vec<usize>,
-    /// First tile of each body, and the number of tiles.
-    first_tile: Vec<usize>,
     /// Blocks that two or more bodies hold.
     pub shared_blocks: Vec<SharedBlock<D>>,
     shared: Vec<u32>,
@@ -92,6 +96,9 @@ const LEAST_SMALL: usize = 64;
 /// Tiles of a portion, or a few more.
 const PORTION: usize = 32;
 
+/// Bodies that a thread takes at a time.
+const BODIES: usize = 16;
+
 /// Whether the blocks under the particles, and with them the field's slots, are others than before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Blocks {
@@ -112,6 +119,34 @@ impl<const D: usize> ActiveBlocks<D> {
         ActiveBlocks { mirrors, border: Some(Box::default()), ..self }
     }
 
+    /// Bodies that have particles or blocks here, in their order.
+    pub fn here(&self) -> &[u32] {
+        &self.here
+    }
+
+    /// Takes note that bodies are here.
+    fn welcome(&mut self, bodies: impl IntoIterator<Item = u32>) {
+        let known = self.here.len();
+        self.here.extend(bodies);
+        if self.here.len() > known {
+            self.here.sort_unstable();
+            self.here.dedup();
+        }
+    }
+
+    /// Begins with lists of so many bodies, all of which may be here, if there are none yet.
+    fn begin(&mut self, bodies: usize, reach: i32) {
+        if self.cell_lists.len() != bodies {
+            self.cell_lists.resize_with(bodies, || CellList::of_none(reach));
+            self.here = (0..bodies as u32).collect();
+        }
+    }
+
+    /// Does something to the list of each body that is here, on threads.
+    fn each_here(&mut self, work: impl Fn(usize, &mut CellList) + Sync) {
+        each_of(&mut self.cell_lists, &self.here, BODIES, work);
+    }
+
     /// Whether what is at a block is booked by this rank; by one that is alone, always.
     pub fn books(&self, block: [i32; D]) -> bool {
         self.border.as_ref().is_none_or(|border| border.books(block))
@@ -124,7 +159,8 @@ impl<const D: usize> ActiveBlocks<D> {
         let Border { near, ranks_near, .. } = &mut *border;
         near.clear();
         let mut messages: Vec<Message> = Vec::new();
-        for (body, list) in self.cell_lists.iter().enumerate() {
+        for body in self.here.iter().map(|&body| body as usize) {
+            let list = &self.cell_lists[body];
             for (number, (&home, &reached)) in list.homes.iter().zip(&list.reached).enumerate() {
                 let others =
                     ranks_near.entry(home).or_insert_with(|| self.ranks_near(block_of(home), rank, &owner));
@@ -178,14 +214,13 @@ impl<const D: usize> ActiveBlocks<D> {
         left: Option<&[u64]>,
         (base, number): (impl Fn(usize, usize) -> [i32; D] + Sync, impl Fn(usize, usize) -> u32 + Sync),
     ) -> Blocks {
-        self.cell_lists.resize_with(bodies, CellList::default);
-        let first_tile = &self.first_tile;
+        self.begin(bodies, reach);
         let changed = AtomicBool::new(false);
-        each(&mut self.cell_lists, 16, |body, cell_list| {
+        self.each_here(|body, cell_list| {
             let looks = (|particle| base(body, particle), |particle| number(body, particle));
             let blocks = match left {
                 Some(left) if !cell_list.forgotten => {
-                    let left = &left[first_tile[body]..first_tile[body + 1]];
+                    let left = &left[cell_list.tiles.clone()];
                     cell_list.update(left, looks)
                 }
                 _ => cell_list.start((count(body), reach), looks),
@@ -201,21 +236,24 @@ impl<const D: usize> ActiveBlocks<D> {
         Blocks::Same
     }
 
-    /// The same for the particles of one of several ranks, in steps: finds those on the move. Then follow
-    /// [`ActiveBlocks::emigrants`], [`ActiveBlocks::renumber`], [`ActiveBlocks::arrive`] and [`ActiveBlocks::settle`].
+    /// The same for the particles of one of several ranks, in steps: finds those on the move, and those in blocks of
+    /// the first period that are `lost` to other ranks. Then follow [`ActiveBlocks::emigrants`],
+    /// [`ActiveBlocks::renumber`], [`ActiveBlocks::arrive`] and [`ActiveBlocks::settle`].
     pub fn find_movers(
         &mut self,
         (bodies, count, reach): (usize, impl Fn(usize) -> usize + Sync, i32),
         left: Option<&[u64]>,
         (base, number): (impl Fn(usize, usize) -> [i32; D] + Sync, impl Fn(usize, usize) -> u32 + Sync),
+        lost: impl Fn([i32; D]) -> bool + Sync,
     ) {
-        self.cell_lists.resize_with(bodies, CellList::default);
-        let first_tile = &self.first_tile;
-        each(&mut self.cell_lists, 16, |body, cell_list| {
+        self.begin(bodies, reach);
+        let periods = self.periods;
+        self.each_here(|body, cell_list| {
             let looks = (|particle| base(body, particle), |particle| number(body, particle));
             match left {
                 Some(left) if !cell_list.forgotten => {
-                    cell_list.find_movers(&left[first_tile[body]..first_tile[body + 1]], looks);
+                    let left = &left[cell_list.tiles.clone()];
+                    cell_list.find_movers(left, looks, |block| lost(periods.wrapped(block)));
                 }
                 _ => cell_list.find_all((count(body), reach), looks),
             }
@@ -225,10 +263,10 @@ impl<const D: usize> ActiveBlocks<D> {
     /// Those on the move to other ranks, which are in no list from now on, by body and index; `abroad` tells whose a
     /// block of the first period is, if not this rank's.
     pub fn emigrants(&mut self, abroad: impl Fn([i32; D]) -> Option<usize>) -> Vec<Emigrant> {
-        let periods = self.periods;
+        let (periods, lists) = (self.periods, &mut self.cell_lists);
         let mut all = Vec::new();
-        for (body, cell_list) in self.cell_lists.iter_mut().enumerate() {
-            let gone = cell_list.emigrants(|block| abroad(periods.wrapped(block)));
+        for body in self.here.iter().map(|&body| body as usize) {
+            let gone = lists[body].emigrants(|block| abroad(periods.wrapped(block)));
             all.extend(gone.into_iter().map(|(particle, rank)| Emigrant { body, particle, rank }));
         }
         all
@@ -245,13 +283,16 @@ impl<const D: usize> ActiveBlocks<D> {
         (body, particles): (usize, Range<usize>),
         looks: (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
     ) {
+        self.newcomers.push(body as u32);
         self.cell_lists[body].arrive(particles, looks);
     }
 
     /// Brings the lists up to date, and says whether the blocks under this rank's particles are others than before.
     pub fn settle(&mut self, number: impl Fn(usize, usize) -> u32 + Sync) -> Blocks {
+        let newcomers = std::mem::take(&mut self.newcomers);
+        self.welcome(newcomers);
         let changed = AtomicBool::new(false);
-        each(&mut self.cell_lists, 16, |body, cell_list| {
+        self.each_here(|body, cell_list| {
             let settled =
                 cell_list.is_stale().then(|| cell_list.settle::<D>(&|particle| number(body, particle)));
             if settled == Some(Blocks::New) {
@@ -265,7 +306,9 @@ impl<const D: usize> ActiveBlocks<D> {
     pub fn cover(&mut self, named: &[ForeignTile], rank: usize) {
         let mut border = self.border.take().unwrap_or_default();
         border.find((named, rank), &self.cell_lists, (self.periods, &self.mirrors));
-        for (body, cell_list) in self.cell_lists.iter_mut().enumerate() {
+        self.welcome(border.foreign.chunk_by(|a, b| a.body == b.body).map(|of_body| of_body[0].body));
+        for body in self.here.iter().map(|&body| body as usize) {
+            let cell_list = &mut self.cell_lists[body];
             if cell_list.has_foreign_blocks {
                 cell_list.find_blocks::<D>();
             }
@@ -293,6 +336,7 @@ impl<const D: usize> ActiveBlocks<D> {
         (body, count, reach): (usize, usize, i32),
         looks: (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32 + Sync),
     ) {
+        self.welcome([body as u32]);
         self.cell_lists[body].start((count, reach), looks);
         if self.border.is_none() {
             self.rebuild();
@@ -312,19 +356,25 @@ impl<const D: usize> ActiveBlocks<D> {
     }
 
     fn rebuild(&mut self) {
+        let (lists, images) = (&mut self.cell_lists, &mut self.images);
+        self.here.retain(|&body| {
+            let list = &mut lists[body as usize];
+            if list.is_empty() {
+                list.clear();
+                images.get_mut(body as usize).into_iter().for_each(Vec::clear);
+            }
+            !list.is_empty()
+        });
         if self.periods.any() {
             self.find_images();
         }
         let periods = self.periods;
         self.slots.clear();
         self.tiles.clear();
-        self.first_slot.clear();
-        self.first_tile.clear();
         self.keys.clear();
-        for (body, cell_list) in self.cell_lists.iter().enumerate() {
-            let first = self.slots.len();
-            self.first_slot.push(first);
-            self.first_tile.push(self.tiles.len());
+        for (place_of_body, body) in self.here.iter().map(|&body| body as usize).enumerate() {
+            let cell_list = &mut self.cell_lists[body];
+            let (first, first_tile) = (self.slots.len(), self.tiles.len());
             for (i, &key) in cell_list.blocks.iter().enumerate() {
                 self.slots.push((body as u32, block_of(key)));
                 self.keys.push((key, (first + i) as u32));
@@ -342,11 +392,10 @@ impl<const D: usize> ActiveBlocks<D> {
                         .expect("a body holds every block its tiles reach");
                     *slot = (first + place) as u32;
                 }
-                self.tiles.push(Tile { body, block, number, slots });
+                self.tiles.push(Tile { body, block, number, place: place_of_body, slots });
             }
+            (cell_list.slots, cell_list.tiles) = (first..self.slots.len(), first_tile..self.tiles.len());
         }
-        self.first_slot.push(self.slots.len());
-        self.first_tile.push(self.tiles.len());
         self.share_out();
         self.meet();
         self.share();
@@ -356,10 +405,11 @@ impl<const D: usize> ActiveBlocks<D> {
     fn share(&mut self) {
         let Some(mut border) = self.border.take() else { return };
         let slot = |body: usize, block: u64| {
-            let place = self.cell_lists[body].blocks.binary_search(&block).ok()?;
-            Some((self.first_slot[body] + place) as u32)
+            let list = &self.cell_lists[body];
+            let place = list.blocks.binary_search(&block).ok()?;
+            Some((list.slots.start + place) as u32)
         };
-        let own = (&self.tiles[..], &self.cell_lists[..], &self.first_tile[..]);
+        let own = (&self.tiles[..], &self.cell_lists[..]);
         border.share(own, (slot, &self.color_of), (self.periods, &self.mirrors));
         self.border = Some(border);
     }
@@ -369,7 +419,8 @@ impl<const D: usize> ActiveBlocks<D> {
         let periods = self.periods;
         self.images.resize_with(self.cell_lists.len(), Vec::new);
         let border = self.border.as_deref();
-        for (body, (cell_list, images)) in self.cell_lists.iter_mut().zip(&mut self.images).enumerate() {
+        for body in self.here.iter().map(|&body| body as usize) {
+            let (cell_list, images) = (&mut self.cell_lists[body], &mut self.images[body]);
             images.clear();
             let foreign = border.map_or(&[][..], |border| &border.foreign[border.of_body(body)]);
             let own = cell_list.homes.iter().zip(&cell_list.reached).map(|(&home, &reached)| (home, reached));
@@ -403,7 +454,8 @@ impl<const D: usize> ActiveBlocks<D> {
             self.color_of.resize(count, 0);
             border.colors.resize(border.foreign.len(), 0);
         }
-        for body in 0..self.cell_lists.len() {
+        for place in 0..self.here.len() {
+            let body = self.here[place] as usize;
             let tiles = self.tiles_of_body(body);
             let small = tiles.len() <= MOST_SMALL && tiles.len() * LEAST_SMALL <= count;
             self.color(body, border.as_deref());
@@ -524,6 +576,15 @@ impl<const D: usize> ActiveBlocks<D> {
         })
     }
 
+    /// Whether several bodies hold a block that a tile reaches; known where there are other ranks.
+    pub fn meets(&self, tile: &Tile<D>) -> bool {
+        let reached = self.cell_lists[tile.body].reached_by::<D>(tile.number);
+        let held_by_several =
+            |border: &Border, block| border.slots_of(key(self.periods.wrapped(block))).is_some();
+        let meets = |border: &Border| reached.into_iter().any(|block| held_by_several(border, block));
+        self.border.as_deref().is_some_and(meets)
+    }
+
     /// Blocks of this rank's tiles that other ranks hold, too, sorted.
     pub fn blocks_sent(&self) -> Vec<[i32; D]> {
         let border = self.border.iter();
@@ -553,14 +614,19 @@ impl<const D: usize> ActiveBlocks<D> {
         if guests { &cell_list.guests.order } else { &cell_list.order }
     }
 
-    /// Sends the guests of all bodies away.
-    pub fn dismiss_guests(&mut self) {
-        self.cell_lists.iter_mut().for_each(|list| list.guests = GuestList::default());
+    /// Sends the guests of all bodies away, and says which had some.
+    pub fn dismiss_guests(&mut self) -> Vec<u32> {
+        let hosts = std::mem::take(&mut self.hosts);
+        hosts.iter().for_each(|&body| self.cell_lists[body as usize].guests = GuestList::default());
+        hosts
     }
 
     /// Takes note of guests of a body in a tile of another rank, by its home: the particles of each cell, with these
     /// indices from `first` on. Tiles come in their order.
     pub fn invite(&mut self, (body, home): (usize, u64), first: usize, counts: impl Iterator<Item = usize>) {
+        if self.hosts.last() != Some(&(body as u32)) {
+            self.hosts.push(body as u32);
+        }
         let GuestList { order, cells, homes } = &mut self.cell_lists[body].guests;
         homes.push(home);
         let mut end = first;
@@ -579,12 +645,12 @@ impl<const D: usize> ActiveBlocks<D> {
 
     /// The slots of a body.
     pub fn slots_of_body(&self, body: usize) -> Range<usize> {
-        self.first_slot[body]..self.first_slot[body + 1]
+        self.cell_lists[body].slots.clone()
     }
 
     /// The tiles of a body.
     pub fn tiles_of_body(&self, body: usize) -> Range<usize> {
-        self.first_tile[body]..self.first_tile[body + 1]
+        self.cell_lists[body].tiles.clone()
     }
 
     /// Takes note that a body's particles have been brought into their order in memory.
@@ -601,8 +667,9 @@ impl<const D: usize> ActiveBlocks<D> {
     pub fn node_index(&self, body: usize, node: [i32; D]) -> Option<usize> {
         let (block, local) = locate(node);
         let block = self.periods.wrapped(block);
-        let place = self.cell_lists[body].blocks.binary_search(&key(block)).ok()?;
-        Some((self.first_slot[body] + place) * nodes_per_block(D) + local)
+        let list = &self.cell_lists[body];
+        let place = list.blocks.binary_search(&key(block)).ok()?;
+        Some((list.slots.start + place) * nodes_per_block(D) + local)
     }
 
     /// How far away blocks are whose nodes are those of the first period and which a body's particles reach, in blocks.

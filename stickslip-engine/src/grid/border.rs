@@ -268,7 +268,7 @@ impl Border {
     /// `color` of each tile.
     pub(super) fn share<const D: usize>(
         &mut self,
-        (tiles, lists, first): (&[Tile<D>], &[CellList], &[usize]),
+        (tiles, lists): (&[Tile<D>], &[CellList]),
         (slot, color): (impl Fn(usize, u64) -> Option<u32>, &[usize]),
         (periods, mirrors): (Periods<D>, &Mirrors),
     ) {
@@ -300,7 +300,7 @@ impl Border {
         self.of_tile.clear();
         self.of_tile.resize(tiles.len(), (None, 0));
         for &[body, number] in &self.near {
-            let i = first[body as usize] + number as usize;
+            let i = lists[body as usize].tiles.start + number as usize;
             let tile = &tiles[i];
             let reached = lists[tile.body].reached[tile.number];
             let shared = (0..1_usize << D)
@@ -491,7 +491,12 @@ mod tests {
             };
             let bases = [own(0), own(1)];
             let base = |body: usize, i: usize| bases[body][i];
-            active.find_movers((2, |body: usize| bases[body].len(), 2), None, (base, |_, i: usize| i as u32));
+            active.find_movers(
+                (2, |body: usize| bases[body].len(), 2),
+                None,
+                (base, |_, i: usize| i as u32),
+                |_| false,
+            );
             assert!(
                 active.emigrants(|block| Some(self.owner(block)).filter(|&owner| owner != rank)).is_empty()
             );

@@ -57,6 +57,10 @@ pub(super) fn reached_blocks<const D: usize>(
 /// The blocks of one body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CellList {
+    /// Its tiles among those of all bodies, when they were counted last.
+    pub tiles: Range<usize>,
+    /// Its slots of the field likewise.
+    pub slots: Range<usize>,
     /// Indices of the particles, by tile, then cell, then number.
     pub order: Vec<u32>,
     /// Place in `order` of each cell of each tile, and the end.
@@ -142,6 +146,16 @@ impl Mover {
 const GONE: u32 = u32::MAX;
 
 impl CellList {
+    /// One of a body without particles, which reach so many nodes beyond their base nodes.
+    pub fn of_none(reach: i32) -> Self {
+        CellList { reach, ..CellList::default() }
+    }
+
+    /// Forgets everything, and the room that it took.
+    pub fn clear(&mut self) {
+        *self = Self::of_none(self.reach);
+    }
+
     /// Looks at all particles: their base nodes and numbers.
     pub fn start<const D: usize>(
         &mut self,
@@ -159,7 +173,8 @@ impl CellList {
         (count, reach): (usize, i32),
         (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
     ) {
-        *self = CellList { reach, begun: true, ..CellList::default() };
+        let (tiles, slots) = (self.tiles.clone(), self.slots.clone());
+        *self = CellList { tiles, slots, begun: true, ..Self::of_none(reach) };
         let movers = (0..count).map(|i| mover(base(i), (i as u32, number(i))));
         self.movers.extend(movers);
     }
@@ -170,15 +185,17 @@ impl CellList {
         left: &[u64],
         (base, number): (impl Fn(usize) -> [i32; D] + Sync, impl Fn(usize) -> u32 + Sync),
     ) -> Blocks {
-        self.find_movers(left, (base, &number));
+        self.find_movers(left, (base, &number), |_| false);
         if self.movers.is_empty() { Blocks::Same } else { self.settle::<D>(&number) }
     }
 
-    /// Finds those on the move among the particles in cells that particles have left.
+    /// Finds those on the move among the particles in cells that particles have left, and takes all for such whose home
+    /// is `lost`.
     pub fn find_movers<const D: usize>(
         &mut self,
         left: &[u64],
         (base, number): (impl Fn(usize) -> [i32; D] + Sync, impl Fn(usize) -> u32 + Sync),
+        lost: impl Fn([i32; D]) -> bool + Sync,
     ) {
         let n = nodes_per_block(D);
         self.gone.clear();
@@ -190,15 +207,20 @@ impl CellList {
         each(&mut self.leaving[..count], 1, |part, leaving| {
             let left = &left[part * TILES..left.len().min((part + 1) * TILES)];
             leaving.clear();
-            for (i, &left) in left.iter().enumerate().filter(|(_, left)| **left != 0) {
+            for (i, &left) in left.iter().enumerate() {
                 let tile = part * TILES + i;
+                let is_lost = lost(block_of(homes[tile]));
+                let left = if is_lost { u64::MAX } else { left };
+                if left == 0 {
+                    continue;
+                }
                 for cell in (0..n).filter(|cell| left >> cell & 1 == 1) {
                     for place in cells[tile * n + cell]..cells[tile * n + cell + 1] {
                         // SAFETY: every place belongs to one tile, and every tile to one part.
                         let particle = unsafe { order.get(place as usize) };
                         let i = *particle as usize;
                         let new = mover(base(i), (*particle, number(i)));
-                        if (new.block, new.cell as usize) != (homes[tile], cell) {
+                        if is_lost || (new.block, new.cell as usize) != (homes[tile], cell) {
                             leaving.push(new);
                             // SAFETY: as above.
                             unsafe { *gone.get(tile) += 1 };
@@ -258,6 +280,11 @@ impl CellList {
         (base, number): (impl Fn(usize) -> [i32; D], impl Fn(usize) -> u32),
     ) {
         self.movers.extend(particles.map(|i| mover(base(i), (i as u32, number(i)))));
+    }
+
+    /// Whether the body has no particles and no blocks here.
+    pub fn is_empty(&self) -> bool {
+        self.homes.is_empty() && self.blocks.is_empty()
     }
 
     /// Whether particles came, moved or left since the lists were made.

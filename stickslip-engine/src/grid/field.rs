@@ -1,6 +1,6 @@
 //! What the nodes carry: all bodies' blocks in one slab, and the window through which a tile sees its part of it.
 
-use super::{ActiveBlocks, Nodes, SIDE, Tile, next_of, node_at, nodes_per_block};
+use super::{ActiveBlocks, Nodes, SIDE, Tile, every_node, layer, next_of, node_at, nodes_per_block};
 use crate::basis::MAX_WIDTH;
 use crate::lanes::{Any, Lanes, MOST_LANES, Machine, prefetch};
 use crate::pages::ask_for_large;
@@ -469,27 +469,23 @@ pub unsafe fn add_at<T: Real, const D: usize>(
 /// layers along the axes of the cut.
 pub fn cells_reaching<const D: usize>(nodes: Nodes, (corner, cut): (usize, u8), side: usize) -> u64 {
     let width = side as i32 - SIDE + 1;
+    let bit = |bits: usize, axis: usize| bits >> (D - 1 - axis) & 1 == 1;
+    // Of each axis and place of a node along it, the cells from which particles reach that far.
+    let along: [[u64; SIDE as usize]; D] = std::array::from_fn(|axis| {
+        std::array::from_fn(|place| {
+            let place = place as i32;
+            let is_there = bit(corner, axis) || !bit(usize::from(cut), axis) || place < width - 1;
+            let last = place + if bit(corner, axis) { SIDE } else { 0 };
+            let cells = (last - width + 1).max(0)..(last + 1).min(SIDE);
+            cells.filter(|_| is_there).fold(0, |all, n| all | layer::<D>(axis, n))
+        })
+    });
     let (mut nodes, mut cells) = (nodes, 0);
     while let Some(local) = next_of(&mut nodes) {
         let place: [i32; D] = node_at([0; D], local);
-        let bit = |bits: usize, axis: usize| bits >> (D - 1 - axis) & 1 == 1;
-        let is_there =
-            |axis: usize| bit(corner, axis) || !bit(usize::from(cut), axis) || place[axis] < width - 1;
-        if !(0..D).all(is_there) {
-            continue;
-        }
-        let along: [_; D] = std::array::from_fn(|axis| {
-            let last = place[axis] + if bit(corner, axis) { SIDE } else { 0 };
-            (last - width + 1).max(0)..(last + 1).min(SIDE)
-        });
-        for cell in 0..nodes_per_block(D) {
-            let at: [i32; D] = node_at([0; D], cell);
-            if (0..D).all(|axis| along[axis].contains(&at[axis])) {
-                cells |= 1 << cell;
-            }
-        }
+        cells |= (0..D).fold(u64::MAX, |all, axis| all & along[axis][place[axis] as usize]);
     }
-    cells
+    cells & every_node(D)
 }
 
 /// Adds to a slot what a tile gave it: the part of its sums, of a window with this side, that is this one of its

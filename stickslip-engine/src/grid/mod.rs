@@ -35,6 +35,21 @@ const MOST_NODES: usize = nodes_per_block(3);
 /// Nodes of a block, a bit each, the lowest first.
 pub type Nodes = u64;
 
+/// Nodes of a block whose coordinate along an axis is `n`; bits beyond the block mean nothing.
+pub fn layer<const D: usize>(axis: usize, n: i32) -> Nodes {
+    let every: Nodes = match D - 1 - axis {
+        0 => 0x1111_1111_1111_1111,
+        1 => 0x000f_000f_000f_000f,
+        _ => 0xffff,
+    };
+    every << (n as u32 * (SIDE as u32).pow((D - 1 - axis) as u32))
+}
+
+/// All nodes of a block.
+pub const fn every_node(dimension: usize) -> Nodes {
+    Nodes::MAX >> (Nodes::BITS as usize - nodes_per_block(dimension))
+}
+
 /// The lowest place in `nodes`, which is taken out of it.
 #[inline(always)]
 pub fn next_of(nodes: &mut Nodes) -> Option<usize> {
@@ -75,11 +90,6 @@ impl<T: Real, const D: usize> Lattice<T, D> {
     #[inline(always)]
     pub fn half_box(&self, half_width: T) -> T {
         self.half_side.map_or(half_width, |half| half * self.cell)
-    }
-
-    /// Nodes that a particle reaches along an axis, at most.
-    pub fn most_reached(&self) -> usize {
-        if self.half_side.is_some_and(|half| half > T::HALF) { 4 } else { 3 }
     }
 
     /// Position in cells from the origin.

@@ -185,8 +185,11 @@ pub const MOST_COMPONENTS: usize = Kind::Tensor.components();
 const LINE: usize = 64;
 
 impl<T: Real, const D: usize> Particles<T, D> {
-    /// Entries from a column to the next, of so many particles.
+    /// Entries from a column to the next, of so many particles; a body without any takes no memory.
     const fn stride_of(count: usize) -> usize {
+        if count == 0 {
+            return 0;
+        }
         let lines = (count * size_of::<T>()).div_ceil(LINE) | 1;
         lines * LINE / size_of::<T>()
     }

@@ -7,12 +7,13 @@
 mod partition;
 mod threads;
 
-pub use partition::Partition;
+pub(crate) use partition::{BlockLoad, Census, Partition};
 pub use threads::Threads;
 
 use crate::exact::ExactSum;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
 
 /// A message with the other rank: whom it is for, or who sent it.
 pub type Message = (usize, Vec<u8>);
@@ -30,6 +31,12 @@ pub fn message_to(messages: &mut Vec<Message>, rank: usize) -> &mut Vec<u8> {
 pub fn combined<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X, join: impl Fn(X, X) -> X) -> X {
     let join = |a: &[u8], b: &[u8]| bytes_of(&join(read(a), read(b)));
     read(&ranks.combine(bytes_of(said), &join))
+}
+
+/// Sums of what two say, place by place.
+pub fn added<X: AddAssign>(mut all: Vec<X>, others: Vec<X>) -> Vec<X> {
+    all.iter_mut().zip(others).for_each(|(sum, other)| *sum += other);
+    all
 }
 
 /// What each rank says, by rank.
@@ -80,6 +87,31 @@ impl SentAndWaited {
             messages: self.messages + other.messages,
             bytes: self.bytes + other.bytes,
             waited: self.waited + other.waited,
+        }
+    }
+}
+
+/// What a rank has of a simulation, and what it did for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RankShare {
+    /// Its particles now.
+    pub particles: usize,
+    /// Steps of which it did its part.
+    pub steps: u64,
+    /// Wall time in steps without waiting for other ranks [s].
+    pub computed: f64,
+    /// What it sent in steps, and how long it waited for others there.
+    pub traffic: SentAndWaited,
+}
+
+impl RankShare {
+    /// What it has, and what it did since `before`.
+    pub fn since(self, before: RankShare) -> RankShare {
+        RankShare {
+            particles: self.particles,
+            steps: self.steps - before.steps,
+            computed: self.computed - before.computed,
+            traffic: self.traffic.since(before.traffic),
         }
     }
 }

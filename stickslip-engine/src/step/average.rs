@@ -16,21 +16,15 @@
 use super::Engine;
 use super::pass::Verbs;
 use crate::basis::Basis;
-use crate::body::Body;
 use crate::grid::Node;
 use crate::lanes::Laned;
 use crate::transfer::Share;
 use std::time::Instant;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// Whether any body's material wants means.
-    pub(super) fn averages_volume(&self) -> bool {
-        self.state.bodies.iter().any(Body::averages_volume)
-    }
-
     /// d_i, from the velocities that strain; nothing where no material wants it.
     pub(super) fn average_dilatation(&mut self, dt: T) {
-        if self.averages_volume() {
+        if self.settings.averages_volume {
             self.average(Share::Dilatation, dt);
         }
     }

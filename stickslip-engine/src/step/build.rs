@@ -1,9 +1,10 @@
 //! From a scene to a simulation.
 
-use super::among::{Find, Home};
+use super::among::{Find, SharedOut, Walked, share_out, walk, walk_together};
 use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
+use super::together::over_arrays;
 use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
@@ -15,7 +16,7 @@ use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
 use crate::door::{NotTakenUp, RemovedParticles, RestoreError, SavedState, Simulation, WrittenValues};
-use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill, sites};
+use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress::{self, InitialStress};
 use crate::lanes::{Laned, Processor};
@@ -23,14 +24,14 @@ use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
 use crate::natural;
 use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
-use crate::ranks::{Partition, Ranks};
+use crate::ranks::Ranks;
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
     self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -93,18 +94,24 @@ pub(crate) fn build_among_from(
     Ok(whole)
 }
 
-/// A simulation without particles, which can [take up](Shareable::take_up_share) those of a saved state.
+/// A simulation without particles, which can [take up](Shareable::take_up_share) those of a saved state; all ranks
+/// build one.
 ///
 /// # Errors
 /// What [`check::problems`] finds.
-pub(crate) fn build_empty(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Shareable>, Problem> {
-    build_for(scene, path, Keeping::None)
+pub(crate) fn build_empty(
+    scene: &Scene,
+    path: ParticleLoop,
+    ranks: &dyn Ranks,
+) -> Result<Box<dyn Shareable>, Problem> {
+    build_for(scene, path, Keeping::None(ranks))
 }
 
 /// Which particles of a scene a simulation begins with.
-enum Keeping {
+enum Keeping<'a> {
     All,
-    None,
+    /// None, on any of several ranks.
+    None(&'a dyn Ranks),
     /// Those of one of several ranks.
     Share(Arc<dyn Ranks>),
 }
@@ -181,11 +188,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The same with these particles.
     fn of(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Self, Problem> {
         check::problems(scene)?;
+        let known = |walked: &Option<Walked>| {
+            walked.map(|Walked { count, volume, center, .. }| Filled {
+                count,
+                volume,
+                center,
+                kept: Vec::new(),
+            })
+        };
         let ranks = match keeping {
-            Keeping::All => return Self::keeping(scene, path, None, |_| true),
-            Keeping::None => {
-                let volumes = scene.bodies.iter().map(|body| walk(scene, body).map(|site| site.volume).sum());
-                return Self::keeping(scene, path, Some(volumes.collect()), |_| false);
+            Keeping::All => return Self::filled(scene, path, &|number| Filled::of(scene, number)),
+            Keeping::None(ranks) => {
+                let walked = walk_together(scene, ranks, &mut |_, _| ());
+                return Self::filled(scene, path, &|number| known(&walked[number]));
             }
             Keeping::Share(ranks) => ranks,
         };
@@ -195,39 +210,25 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let cell = std::array::from_fn(|k| ((x[k] - origin[k]) / cell).floor() as i32);
             periods.wrapped(locate(cell).0)
         };
-        // How many particles begin in each block.
-        let mut loads: HashMap<[i32; D], u64> = HashMap::new();
-        // Of each body, the block in which its first particle begins, and how many there are.
-        let mut begins = Vec::new();
-        let mut volumes = Vec::new();
-        for body in &scene.bodies {
-            let (mut first, mut count, mut volume) = (None, 0, 0.0);
-            for site in walk(scene, body) {
-                let block = block(site.position);
-                *loads.entry(block).or_default() += 1;
-                (first, count, volume) = (first.or(Some(block)), count + 1, volume + site.volume);
+        let SharedOut { walked, here, partition, homes } = share_out::<D>(scene, &*ranks, (periods, block));
+        let own = |site: &ParticleSite| partition.owner(block(site.position)) == ranks.rank();
+        let mut engine = Self::filled(scene, path, &|number| {
+            let mut filled = known(&walked[number])?;
+            if here.contains(&number) {
+                let sites = (0..).zip(walk(scene, &scene.bodies[number]));
+                filled.kept = sites.filter(|(_, site)| own(site)).collect();
             }
-            begins.push((first, count));
-            volumes.push(volume);
-        }
-        let partition = Partition::balanced(ranks.count(), None, loads);
-        let home = |&(first, count): &(Option<[i32; D]>, usize)| {
-            Home::new(first.map_or(0, |block| partition.owner(block)), count)
-        };
-        let homes = begins.iter().map(home).collect();
-        let own = |x| partition.owner(block(x)) == ranks.rank();
-        let mut engine = Self::keeping(scene, path, Some(volumes), own)?;
+            Some(filled)
+        })?;
         engine.join(ranks, (partition, homes));
         Ok(engine)
     }
 
-    /// The simulation with the particles that begin where some are wanted: of bodies whose volumes are known, the
-    /// others are never there.
-    fn keeping(
+    /// The simulation with the particles that fill each body, by its number; none fill one without bounds.
+    fn filled(
         scene: &Scene,
         path: ParticleLoop,
-        volumes: Option<Vec<f64>>,
-        wanted: impl Fn([f64; 3]) -> bool,
+        filled: &dyn Fn(usize) -> Option<Filled>,
     ) -> Result<Self, Problem> {
         let cell = scene.discretization.cell;
         let half_side = match scene.discretization.basis {
@@ -241,8 +242,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let heated = heated_bodies(scene);
         for (number, body) in scene.bodies.iter().enumerate() {
             let sites = scene.lattice(body);
-            let volume = volumes.as_ref().map(|volumes| volumes[number]);
-            let filled = Filled::of(scene, body, (volume, &wanted));
+            let filled = filled(number);
             let center = filled.as_ref().map_or(body.shape.anchor(sites.dimension), |filled| filled.center);
             let filled = filled.unwrap_or_else(|| {
                 unbounded.push(Unbounded {
@@ -309,6 +309,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let removed = vec![RemovedParticles::default(); bodies.len()];
         let written = vec![WrittenValues::default(); bodies.len()];
         let tallies = scene.outputs.measurements.faces().next().is_some();
+        let all_that =
+            |is: &dyn Fn(&Body<T, D>) -> bool| (0..bodies.len()).filter(|&i| is(&bodies[i])).collect();
+        let (rigid, together) = (all_that(&Body::is_rigid), all_that(&|body| over_arrays(body).is_some()));
+        let averages_volume = bodies.iter().any(Body::averages_volume);
         let points = |load: &scene::Load| LoadPoints::new(scene, load, all_filled[load.body]);
         let loads = scene.loads.iter().map(points).collect();
         Ok(Engine {
@@ -334,6 +338,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 springs: scene.springs.iter().map(|spring| SpringPoints::new(scene, spring)).collect(),
                 surfaces: RigidSurfaces::new(scene),
                 free: free_bodies(scene),
+                rigid,
+                together,
+                averages_volume,
                 time: scene.time.clone(),
                 path,
             },
@@ -377,11 +384,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
-/// The particles that fill a body, one after the other; none of a body without bounds.
-pub(super) fn walk<'a>(scene: &Scene, body: &'a scene::Body) -> impl Iterator<Item = ParticleSite> + 'a {
-    sites(&body.shape, &scene.lattice(body), body.particles).into_iter().flatten()
-}
-
 /// The particles that fill a body.
 #[derive(Default)]
 struct Filled {
@@ -396,30 +398,12 @@ struct Filled {
 }
 
 impl Filled {
-    /// Those of a body that begin where some are wanted; none of a body without bounds. Where the volume of all is
-    /// known, they are taken one after the other.
-    fn of(
-        scene: &Scene,
-        body: &scene::Body,
-        (volume, wanted): (Option<f64>, impl Fn([f64; 3]) -> bool),
-    ) -> Option<Self> {
-        let Some(volume) = volume else {
-            let filling = fill(&body.shape, &scene.lattice(body), body.particles)?;
-            let (count, volume, center) = (filling.sites.len(), filling.volume(), filling.center());
-            let sites = (0..).zip(filling.sites);
-            let kept = sites.filter(|(_, site)| wanted(site.position)).collect();
-            return Some(Filled { count, volume, center, kept });
-        };
-        let mut filled = Filled { volume, ..Filled::default() };
-        for (site, number) in sites(&body.shape, &scene.lattice(body), body.particles)?.zip(0..) {
-            filled.count += 1;
-            filled.center =
-                std::array::from_fn(|k| filled.center[k] + site.position[k] * (site.volume / volume));
-            if wanted(site.position) {
-                filled.kept.push((number, site));
-            }
-        }
-        Some(filled)
+    /// All of a body; none of one without bounds.
+    fn of(scene: &Scene, number: usize) -> Option<Self> {
+        let body = &scene.bodies[number];
+        let filling = fill(&body.shape, &scene.lattice(body), body.particles)?;
+        let (count, volume, center) = (filling.sites.len(), filling.volume(), filling.center());
+        Some(Filled { count, volume, center, kept: (0..).zip(filling.sites).collect() })
     }
 }
 

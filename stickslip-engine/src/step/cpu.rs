@@ -21,6 +21,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Threads<T, const D: usize> {
     /// A window for each thread.
     windows: Vec<Mutex<Box<Window<T, D>>>>,
+    /// Columns of the bodies that are here.
     columns: Vec<Columns<T, D>>,
 }
 
@@ -42,7 +43,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .windows
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
-        self.workspace.threads.columns.extend(self.state.bodies.iter_mut().map(|body| body.particles.open()));
+        let bodies = &mut self.state.bodies;
+        let opened = self.workspace.active.here().iter().map(|&body| bodies[body as usize].particles.open());
+        self.workspace.threads.columns.extend(opened);
         let mut among = self.among.take();
         let side = window_side(B::WIDTH).pow(D as u32);
         let mut kept_windows = match (&mut among, pass.verbs.scatter) {
@@ -86,7 +89,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 pass,
                 tile,
                 body,
-                columns: room.columns[tile.body],
+                columns: room.columns[tile.place],
                 order: active.order_of(tile.body),
                 cells: active.cells_of(tile),
                 nodes: &nodes,

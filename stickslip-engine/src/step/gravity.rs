@@ -32,14 +32,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let mut sums: [ExactSum; 3] = Default::default();
         let mut parts = std::mem::take(&mut self.workspace.weights);
-        for body in &self.state.bodies {
-            if let Some(motion) = &body.motion {
-                // All ranks have it: the first counts it.
-                let counts = self.among.as_ref().is_none_or(|among| among.ranks.rank() == 0);
-                let mass = motion.as_free().filter(|_| counts).map_or(0.0, |free| free.mass);
-                sums.iter_mut().zip(motion.center).for_each(|(sum, x)| sum.add(mass * x));
-                continue;
-            }
+        // All ranks have rigid bodies: the first counts them.
+        let counts = self.among.as_ref().is_none_or(|among| among.ranks.rank() == 0);
+        for &body in self.settings.rigid.iter().filter(|_| counts) {
+            let Some(motion) = &self.state.bodies[body].motion else { continue };
+            let mass = motion.as_free().map_or(0.0, |free| free.mass);
+            sums.iter_mut().zip(motion.center).for_each(|(sum, x)| sum.add(mass * x));
+        }
+        for body in self.bodies_here().map(|body| &self.state.bodies[body]).filter(|body| !body.is_rigid()) {
             parts.clear();
             parts.resize_with(body.particles.len().div_ceil(PART), || {
                 std::array::from_fn(|_| ExactSum::default())

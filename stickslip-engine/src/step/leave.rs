@@ -9,6 +9,7 @@ use crate::lanes::Laned;
 use crate::particles::ColumnStart;
 use crate::scene::Leaving;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::PoisonError;
 
 /// Steps from one removal to the next: to take particles out costs about as much as to sort the body. Those that are
@@ -28,9 +29,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if !self.removes_leavers() || !self.state.steps.is_multiple_of(EVERY) {
             return;
         }
-        let outside: Vec<Vec<u32>> = (0..self.state.bodies.len()).map(|body| self.outside(body)).collect();
-        let gone = outside.iter().enumerate().filter(|(_, outside)| !outside.is_empty());
-        let gone: Vec<Gone> = gone.map(|(body, outside)| self.first_of(body, outside)).collect();
+        let outside = self.bodies_here().map(|body| (body, self.outside(body)));
+        let outside: BTreeMap<usize, Vec<u32>> = outside.filter(|(_, outside)| !outside.is_empty()).collect();
+        let gone = outside.iter().map(|(&body, outside)| self.first_of(body, outside));
+        let gone: Vec<Gone> = gone.collect();
         let mut gone = match &self.among {
             Some(among) => among.gathered(&gone).concat(),
             None => gone,
@@ -39,7 +41,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         gone.sort_unstable_by_key(|gone| (gone.body, gone.number));
         for of_body in gone.chunk_by(|a, b| a.body == b.body) {
             let count = of_body.iter().map(|gone| gone.count).sum();
-            self.remove((of_body[0].body, &outside[of_body[0].body]), (count, of_body[0].place));
+            let here = outside.get(&of_body[0].body).map_or(&[][..], Vec::as_slice);
+            self.remove((of_body[0].body, here), (count, of_body[0].place));
         }
     }
 

@@ -232,7 +232,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         places.resize_with(bodies.len(), Vec::new);
         if self.among.is_some() {
             // Who was with another rank may have come.
-            places.iter_mut().for_each(Vec::clear);
+            self.settings.loads.iter().for_each(|load| places[load.body].clear());
         }
         for load in self.settings.loads.iter().filter(|load| !load.points.is_empty()) {
             find_carriers(&mut places[load.body], bodies[load.body].particles.numbers(), &load.points);

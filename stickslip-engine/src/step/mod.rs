@@ -219,7 +219,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let dt = self.stable().min(longest);
         let time = self.state.time + 0.5 * dt;
-        for body in &mut self.state.bodies {
+        for &body in &self.settings.rigid {
+            let body = &mut self.state.bodies[body];
             let Some(motion) = &mut body.motion else { continue };
             motion.set_time(time).map_err(|reason| {
                 let what = format!("the prescribed motion of body `{}`", body.name);
@@ -248,6 +249,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let tallies = !self.state.walls.is_empty();
         let boundary = if tallies { boundary.tallied() } else { boundary };
         self.workspace = Workspace::new(boundary, self.settings.lattice.periods);
+        // The lists that knew which had some are gone.
+        self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
         self.watch_borders();
     }
 

@@ -193,7 +193,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         places.resize_with(bodies.len(), Vec::new);
         if self.among.is_some() {
             // Who was with another rank may have come.
-            places.iter_mut().for_each(Vec::clear);
+            let ends = self.settings.springs.iter().flat_map(|spring| &spring.ends);
+            ends.for_each(|end| places[end.body].clear());
         }
         for end in self.settings.springs.iter().flat_map(|spring| &spring.ends) {
             if !bodies[end.body].is_rigid() {

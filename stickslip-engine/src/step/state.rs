@@ -53,6 +53,12 @@ pub struct Settings<T, const D: usize> {
     pub surfaces: RigidSurfaces,
     /// Of each body, whether it is rigid and free; empty where none is.
     pub free: Vec<bool>,
+    /// Rigid bodies, in their order.
+    pub rigid: Vec<usize>,
+    /// Bodies whose law takes all particles at once, in their order.
+    pub together: Vec<usize>,
+    /// Whether any body's material wants means of dilatation rate and pressure.
+    pub averages_volume: bool,
     pub time: Time,
     pub path: ParticleLoop,
 }
@@ -139,7 +145,7 @@ pub struct Workspace<T, const D: usize> {
     pub springs: SpringRoom<T, D>,
     /// Room for what heat does to the particles of a body.
     pub warmed: Vec<Warmed<T>>,
-    /// What each rigid body found as it moved, and how many of its particles changed their cells.
+    /// What each of the rigid bodies found as it moved, and how many of its particles changed their cells.
     pub displaced: Vec<Option<(Found<T>, u32)>>,
     /// Free rigid bodies in a step.
     pub mechanism: Mechanism,

@@ -20,7 +20,7 @@ pub struct LawRoom {
 }
 
 /// The law of a body, if it takes all particles at once.
-fn over_arrays<T: Real, const D: usize>(
+pub(super) fn over_arrays<T: Real, const D: usize>(
     body: &Body<T, D>,
 ) -> Option<(Custom<T>, &'static dyn LawOverArrays)> {
     let Material::Custom(custom) = body.material else { return None };
@@ -30,14 +30,14 @@ fn over_arrays<T: Real, const D: usize>(
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Whether a body has such a law.
     pub(super) fn has_laws_over_arrays(&self) -> bool {
-        self.state.bodies.iter().any(|body| over_arrays(body).is_some())
+        !self.settings.together.is_empty()
     }
 
     /// sigma = law(F) of these laws, once the particles have their F.
     pub(super) fn respond_together(&mut self, dt: T) -> Result<(), StepError> {
         let (start, time) = (Instant::now(), self.state.time + dt.f64());
         let mut asked = false;
-        for number in 0..self.state.bodies.len() {
+        for &number in &self.settings.together {
             let body = &mut self.state.bodies[number];
             let Some((custom, law)) = over_arrays(body) else { continue };
             asked = true;

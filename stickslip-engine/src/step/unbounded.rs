@@ -250,7 +250,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let unbounded = &self.state.unbounded[i];
         let pose = self.without_bounds(unbounded.body).expect(ONLY_RIGID).pose();
         let active = &self.workspace.active;
-        let deform = (0..self.state.bodies.len()).filter(|&body| !self.state.bodies[body].is_rigid());
+        let deform = self.bodies_here().filter(|&body| !self.state.bodies[body].is_rigid());
         // Blocks are covered when all ranks have named their tiles: not yet.
         let alone = self.among.is_none();
         let held = deform.flat_map(move |body| {

@@ -15,7 +15,7 @@ use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Lattice, Node, locate, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
 use crate::tensor::{Matrix, Vector};
-use crate::threads::each;
+use crate::threads::{each, each_of};
 use crate::transfer::{SETTLES_EVERY, Share, begin_filter, end_filter, filter_once_more, filters, settles};
 use std::time::Instant;
 
@@ -36,7 +36,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             |body: usize, particle: usize| home::<T, D, B>(lattice, bodies[body].particles.place(particle));
         let number = |body: usize, particle: usize| bodies[body].particles.numbers()[particle];
         let blocks = if self.among.is_some() {
-            self.workspace.active.find_movers((bodies.len(), count, reach), left, (base, number));
+            let lost = |block: [i32; D]| self.among.as_ref().is_some_and(|among| among.has_lost(block));
+            let (all, looks) = ((bodies.len(), count, reach), (base, number));
+            self.workspace.active.find_movers(all, left, looks, lost);
             let blocks = self.cross_borders();
             let blocks = blocks.max(self.spread(blocks));
             self.watch.lap("blocks", start);
@@ -73,9 +75,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch.lap("blocks", start);
     }
 
+    /// Bodies that may have particles here, in their order.
+    pub(super) fn bodies_here(&self) -> impl Iterator<Item = usize> {
+        let Workspace { active, listed, .. } = &self.workspace;
+        let count = if *listed { active.here().len() } else { self.state.bodies.len() };
+        (0..count).map(|place| if *listed { active.here()[place] as usize } else { place })
+    }
+
     /// Whether no body deforms, and nothing acts on parts of bodies: rigid bodies alone move without a grid.
     pub(super) fn needs_no_grid(&self) -> bool {
-        self.state.bodies.iter().all(Body::is_rigid)
+        self.settings.rigid.len() == self.state.bodies.len()
             && self.settings.loads.is_empty()
             && self.settings.springs.is_empty()
     }
@@ -87,15 +96,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let unknown = self.state.bodies.iter().skip(disorder.len());
         disorder.extend(unknown.map(|body| Disorder::any(body.particles.len())));
         let costly = |body: usize, count: usize| disorder[body].is_costly(count);
-        each(&mut self.state.bodies, BODIES, |i, body| {
+        each_of(&mut self.state.bodies, active.here(), BODIES, |i, body| {
             if costly(i, body.particles.len()) {
                 body.particles.permute(active.order_of(i));
             }
         });
-        for (i, disorder) in disorder.iter_mut().enumerate() {
-            if disorder.is_costly(self.state.bodies[i].particles.len()) {
-                *disorder = Disorder::default();
-                active.tidied(i);
+        for place in 0..active.here().len() {
+            let body = active.here()[place] as usize;
+            if disorder[body].is_costly(self.state.bodies[body].particles.len()) {
+                disorder[body] = Disorder::default();
+                active.tidied(body);
             }
         }
     }
@@ -103,15 +113,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Counts the particles that changed their cells in the step.
     pub(super) fn count_disorder(&mut self) {
         let Workspace { disorder, moved, active, .. } = &mut self.workspace;
-        for (body, disorder) in disorder.iter_mut().enumerate() {
+        for body in active.here().iter().map(|&body| body as usize) {
             let moved = &moved[active.tiles_of_body(body)];
-            disorder.add(moved.iter().map(|&moved| moved as usize).sum());
+            disorder[body].add(moved.iter().map(|&moved| moved as usize).sum());
         }
     }
 
     /// P2G: the particles' share in the nodes.
     pub(super) fn particles_to_grid(&mut self, share: Share) {
-        if share.has_force() && self.averages_volume() {
+        if share.has_force() && self.settings.averages_volume {
             self.scatter(Share::Mass);
             self.workspace.field.find_present(|_| {});
             self.average_mean_stress();
@@ -139,7 +149,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// G2P of velocity gradients, and P2G of forces:  F = (I + L dt) F,  sigma = law(F),  f = -sum V sigma grad S
     pub(super) fn update_stress(&mut self, dt: T) -> Result<(), StepError> {
-        let averages = self.averages_volume();
+        let averages = self.settings.averages_volume;
         let scatter = (!averages && !self.has_laws_over_arrays()).then_some(Share::Force);
         self.run_pass("stress update", Verbs { update_stress: true, scatter, ..Verbs::default() }, dt)?;
         self.respond_together(dt)?;
@@ -275,8 +285,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let start = Instant::now();
         let n = nodes_per_block(D);
         let Workspace { active, field, boundary, .. } = &mut self.workspace;
-        for (body, Body { motion, .. }) in self.state.bodies.iter().enumerate() {
-            let Some(motion) = motion else { continue };
+        for body in active.here().iter().map(|&body| body as usize) {
+            let Some(motion) = &self.state.bodies[body].motion else { continue };
             for slot in active.slots_of_body(body) {
                 let (_, block) = active.slots[slot];
                 for local in 0..n {
@@ -306,6 +316,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             boundary: &self.workspace.boundary,
             rules: &self.settings.rules,
             ahead,
+            width: B::WIDTH,
             processor: match self.settings.path {
                 ParticleLoop::Lanes(processor) => processor,
                 _ => Processor::Any,
@@ -371,20 +382,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Moves rigid bodies by the velocities that they have.
     pub(super) fn move_rigid_bodies(&mut self, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
-        let Settings { lattice, held, .. } = &self.settings;
-        let (bodies, unbounded) = (&mut self.state.bodies, &self.state.unbounded);
+        let Settings { lattice, held, rigid, .. } = &self.settings;
+        let (bodies, unbounded) = (Disjoint::new(&mut self.state.bodies), &self.state.unbounded);
         let room = &mut self.workspace.displaced;
         room.clear();
-        room.resize(bodies.len(), None);
-        let displaced = Disjoint::new(room);
-        each(bodies, BODIES, |i, body| {
+        room.resize(rigid.len(), None);
+        each(room, BODIES, |place, displaced| {
+            let i = rigid[place];
             // One without bounds is everywhere: its particles stand for what the others are near.
             let domain = held.filter(|_| !unbounded.iter().any(|unbounded| unbounded.body == i));
-            // SAFETY: every body has a place of its own.
-            unsafe { *displaced.get(i) = move_rigid_body::<T, D, B>((i, body), (lattice, domain), dt) };
+            // SAFETY: every body is listed once.
+            let body = unsafe { bodies.get(i) };
+            *displaced = move_rigid_body::<T, D, B>((i, body), (lattice, domain), dt);
         });
         let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
-        for (i, displaced) in self.workspace.displaced.iter().enumerate() {
+        for (&i, displaced) in rigid.iter().zip(&self.workspace.displaced) {
             let Some((of_body, moved_on)) = displaced else { continue };
             found = found.and(*of_body);
             let tiles = self.workspace.active.tiles_of_body(i);

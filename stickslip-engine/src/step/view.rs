@@ -121,7 +121,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of a body add up to.
     pub(super) fn totals_of(&self, body: usize) -> Totals {
         let body = &self.state.bodies[body];
-        self.among.as_ref().map_or_else(|| body.totals(), |among| among.totals(std::slice::from_ref(body))[0])
+        self.among.as_ref().map_or_else(|| body.totals(), |among| among.totals_of(body))
     }
 
     /// What a snapshot has of some particles.

@@ -161,6 +161,10 @@ fn by_all_contact_laws() {
         .replace("\"gimp\"", "\"cpdi\"")
         .replace("friction = 0.3", "friction = 0.3\nlaw = \"regression\"");
     compare("regression, cpdi", &both, 60);
+    let both = plane
+        .replace("\"gimp\"", "\"linear\"")
+        .replace("friction = 0.3", "friction = 0.3\nlaw = \"regression\"");
+    compare("regression, linear", &both, 100);
 }
 
 #[test]

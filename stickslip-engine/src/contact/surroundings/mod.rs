@@ -16,26 +16,11 @@ pub use sums::{MaterialSums, Wanted};
 use super::Near;
 use crate::basis::{Basis, MAX_WIDTH};
 use crate::boundary::Wall;
-use crate::grid::{Nodes, SIDE, nodes_per_block};
+use crate::grid::{Nodes, SIDE, every_node, layer};
 use crate::lanes::{Laned, Lanes, Machine, Work};
 use crate::scene::Face;
 use crate::tensor::array;
 use std::marker::PhantomData;
-
-/// Nodes of a block whose coordinate along an axis is `n`; bits beyond the block mean nothing.
-fn layer<const D: usize>(axis: usize, n: i32) -> Nodes {
-    let every: Nodes = match D - 1 - axis {
-        0 => 0x1111_1111_1111_1111,
-        1 => 0x000f_000f_000f_000f,
-        _ => 0xffff,
-    };
-    every << (n as u32 * (SIDE as u32).pow((D - 1 - axis) as u32))
-}
-
-/// All nodes of a block.
-pub const fn every_node(dimension: usize) -> Nodes {
-    Nodes::MAX >> (Nodes::BITS as usize - nodes_per_block(dimension))
-}
 
 /// The nodes of a block that lie so deep behind a wall: `depth` or further out.
 pub fn behind<const D: usize>(wall: &Wall, block: [i32; D], depth: i32) -> Nodes {

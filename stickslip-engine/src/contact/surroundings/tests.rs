@@ -161,6 +161,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
             boundary: &boundary,
             rules: &rules,
             ahead: None,
+            width: B::WIDTH,
             processor,
         };
         for block in offsets::<D>(2).map(|block| block.map(|b| b as i32)) {

@@ -1,15 +1,18 @@
 //! A step of one of several ranks: what it sends to others, and takes from them.
 
+mod filling;
 mod loads;
 mod taking_up;
+mod totals;
 
+pub(super) use filling::{SharedOut, Walked, share_out, walk, walk_together};
 pub(crate) use taking_up::Find;
 
 use super::Engine;
 use super::pass::{FaultReport, home};
 use super::walls::WallBooks;
 use crate::basis::Basis;
-use crate::body::{Body, TotalSums, Totals, TurningSums};
+use crate::body::Body;
 use crate::boundary::Wall;
 use crate::contact::BlockSums;
 use crate::door::RankShare;
@@ -22,18 +25,16 @@ use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, Shown, number_of, write_number};
 use crate::ranks::{
-    Message, Partition, Ranks, SentAndWaited, add_up, bytes_of, combined, gathered, largest, message_to, read,
+    BlockLoad, Census, Message, Partition, Ranks, SentAndWaited, add_up, added, bytes_of, combined, gathered,
+    largest, message_to, read,
 };
-use crate::scene::{
-    self, BasisKind, BodyMotion, ContactLaw, ContactRule, Face, Load, NamedMaterial, OutsideValue, Problem,
-    Scene,
-};
+use crate::scene::{self, BodyMotion, Face, Load, NamedMaterial, OutsideValue, Problem, Scene};
 use crate::tensor::Real;
 use crate::threads::each_range;
 use crate::transfer::Share;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -57,12 +58,15 @@ pub(super) struct Among<T> {
     windows: Vec<NodeSums<T>>,
     /// Steps in which this rank did its part, the time in which it computed there [s], and what it sent.
     worked: Worked,
-    /// Steps since the loads were compared last, without those in which particles move house.
-    since: u64,
-    /// What it computed in the fastest of them: whatever else a machine does slows down some of them only [s].
-    fastest: f64,
+    /// What it computed in each step since the loads were compared last, without those in which particles move house
+    /// [s].
+    computed: Vec<f64>,
     /// Whether they do in this step.
     moves: bool,
+    /// Steps that ranks lost by waiting for the one that computes longest, since it was last tried to share blocks out
+    /// anew, and how many may be lost before it is tried again.
+    lost: f64,
+    bears: f64,
 }
 
 /// Where a body began.
@@ -83,10 +87,14 @@ struct Worked {
 }
 
 /// Steps from one comparison of loads to the next.
-const COMPARED_EVERY: u64 = 16;
-/// A rank that works so much longer than the mean has too much, if another partition would lighten that enough.
-const TOO_MUCH: f64 = 1.04;
-const LIGHTER: f64 = 0.98;
+const COMPARED_EVERY: usize = 16;
+/// Steps that ranks may lose by waiting for the one that computes longest, before blocks are shared out anew: to move
+/// particles costs about as much.
+const LOST_AT_MOST: f64 = 0.5;
+/// So many they may lose at most where it was tried in vain.
+const MOST_BORNE: f64 = 100.0;
+/// Another partition must lighten the rank that has most by so much.
+const LIGHTER: f64 = 0.99;
 
 impl Home {
     /// That of a body which began there with so many particles, none if it has no bounds.
@@ -197,6 +205,11 @@ fn given<const D: usize>(share: Share) -> Vec<usize> {
 }
 
 impl<T: Laned> Among<T> {
+    /// Whether a block belongs to another rank since blocks were shared out anew in this step.
+    pub fn has_lost<const D: usize>(&self, block: [i32; D]) -> bool {
+        self.moves && self.partition.owner(block) != self.ranks.rank()
+    }
+
     /// Begins a step, and says when.
     pub fn begin(&mut self) -> (Instant, SentAndWaited) {
         (self.passes, self.fault) = (0, None);
@@ -210,7 +223,7 @@ impl<T: Laned> Among<T> {
         let own = begun.elapsed().as_secs_f64() - now.waited;
         self.worked = Worked { steps: steps + 1, computed: computed + own, traffic: traffic.and(now) };
         if !std::mem::take(&mut self.moves) {
-            (self.since, self.fastest) = (self.since + 1, self.fastest.min(own));
+            self.computed.push(own);
         }
     }
 
@@ -274,21 +287,6 @@ impl<T: Laned> Among<T> {
         gathered(&*self.ranks, said)
     }
 
-    /// What the particles of each body on all ranks add up to.
-    pub fn totals<const D: usize>(&self, bodies: &[Body<T, D>]) -> Arc<[Totals]> {
-        let mut sums: Vec<TotalSums> = bodies.iter().map(Body::total_sums).collect();
-        self.add_up(sums.iter_mut().flat_map(TotalSums::all));
-        sums.iter().map(TotalSums::rounded).collect()
-    }
-
-    /// The angular velocities of bodies with these totals [rad/s].
-    pub fn spins<const D: usize>(&self, bodies: &[Body<T, D>], totals: &[Totals]) -> Vec<[f64; 3]> {
-        let of_body = |(body, totals): (&Body<T, D>, &Totals)| body.turning_sums(totals, body.gyration());
-        let mut sums: Vec<TurningSums> = bodies.iter().zip(totals).map(of_body).collect();
-        self.add_up(sums.iter_mut().flat_map(TurningSums::all));
-        sums.iter().map(TurningSums::spin::<D>).collect()
-    }
-
     /// Adds what bodies did to faces on other ranks.
     pub fn gather_walls(&self, booked: &mut WallBooks) {
         let places: Vec<usize> = booked.keys().copied().collect();
@@ -314,13 +312,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Keeps the particles in this rank's share of the blocks, and forgets the others. All ranks begin with all of
     /// them.
     pub(super) fn divide(&mut self, ranks: Arc<dyn Ranks>) {
-        let mut loads: HashMap<[i32; D], u64> = HashMap::new();
-        for Body { particles, .. } in &self.state.bodies {
-            for particle in 0..particles.len() {
-                *loads.entry(self.block_of(particles, particle)).or_default() += 1;
-            }
+        let mut census = Census::new(self.settings.lattice.periods);
+        for (body, Body { particles, .. }) in self.state.bodies.iter().enumerate() {
+            (0..particles.len()).for_each(|particle| census.count(body, self.block_of(particles, particle)));
         }
-        let partition = Partition::balanced(ranks.count(), None, loads);
+        let partition = census.part(&*ranks).partition(&*ranks);
         let homes = self.state.bodies.iter().zip(&self.settings.filled).map(|(body, &filled)| {
             let is_there = filled > 0 && !body.particles.is_empty();
             let rank = if is_there { partition.owner(self.block_of(&body.particles, 0)) } else { 0 };
@@ -350,9 +346,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             names: Vec::new(),
             windows: Vec::new(),
             worked: Worked::default(),
-            since: 0,
-            fastest: f64::INFINITY,
+            computed: Vec::new(),
             moves: true,
+            lost: 0.0,
+            bears: LOST_AT_MOST,
         });
         self.watch_borders();
     }
@@ -377,10 +374,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn counts_of_all(&self) -> Vec<usize> {
         let own: Vec<usize> = self.state.bodies.iter().map(|body| body.particles.len()).collect();
         let Some(among) = &self.among else { return own };
-        combined(&*among.ranks, &own, |mut all: Vec<usize>, others| {
-            all.iter_mut().zip(others).for_each(|(count, other)| *count += other);
-            all
-        })
+        combined(&*among.ranks, &own, added)
     }
 
     /// Which particles of a body are not in this rank's share, by their places in memory.
@@ -415,18 +409,22 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// changes no bit.
     pub(super) fn rebalance(&mut self) {
         let Some(among) = &mut self.among else { return };
-        if !self.workspace.listed || among.since < COMPARED_EVERY {
+        if !self.workspace.listed || among.computed.len() < COMPARED_EVERY {
             return;
         }
-        let computed = among.fastest;
-        (among.since, among.fastest) = (0, f64::INFINITY);
+        // The median: whatever else a machine does slows down some steps only.
+        among.computed.sort_unstable_by(f64::total_cmp);
+        let computed = among.computed[among.computed.len() / 2];
+        among.computed.clear();
         let particles: usize = self.state.bodies.iter().map(|body| body.particles.len()).sum();
         let all = among.gathered(&(computed, particles));
         let whole: f64 = all.iter().map(|(computed, _)| computed).sum();
         let most = all.iter().map(|(computed, _)| *computed).fold(0.0, f64::max);
-        if most * all.len() as f64 <= TOO_MUCH * whole {
+        among.lost += COMPARED_EVERY as f64 * (most * all.len() as f64 / whole - 1.0);
+        if among.lost <= among.bears {
             return;
         }
+        among.lost = 0.0;
         // What a rank does whatever it has stands on its particles, too: they count within bounds.
         let mean = whole / all.iter().map(|(_, particles)| *particles as f64).sum::<f64>();
         let own = (computed / particles.max(1) as f64 / mean).clamp(0.5, 2.0);
@@ -434,25 +432,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let load = |tile: &Tile<D>| {
             let cells = active.cells_of(tile);
             let count = f64::from(cells[cells.len() - 1] - cells[0]);
-            (self.settings.lattice.periods.wrapped(tile.block).to_vec(), (100.0 * own * count).ceil() as u64)
+            let block = self.settings.lattice.periods.wrapped(tile.block);
+            BlockLoad::new(block, (100.0 * own * count).ceil() as u64, active.meets(tile))
         };
-        let loads: Vec<(Vec<i32>, u64)> = active.tiles.iter().map(load).collect();
-        let loads = among.gathered(&loads).concat();
-        let block = |block: &[i32]| std::array::from_fn(|k| block[k]);
-        let by_block = loads.iter().map(|(at, load)| (block(at), *load));
-        let next = Partition::balanced(all.len(), Some(&among.partition), by_block);
+        let loads: Vec<BlockLoad> = active.tiles.iter().map(load).collect();
+        let next = Partition::among_ranks::<D>(&*among.ranks, Some(&among.partition), loads.clone());
         let heaviest = |partition: &Partition| {
-            let mut of_ranks = vec![0; all.len()];
-            loads.iter().for_each(|(at, load)| of_ranks[partition.owner::<D>(block(at))] += load);
-            of_ranks.into_iter().max().unwrap_or(0) as f64
+            let mut of_ranks = vec![0_u64; all.len()];
+            for BlockLoad { block, load, .. } in &loads {
+                of_ranks[partition.owner::<D>(std::array::from_fn(|k| block[k]))] += load;
+            }
+            combined(&*among.ranks, &of_ranks, added).into_iter().max().unwrap_or(0) as f64
         };
-        if heaviest(&next) < LIGHTER * heaviest(&among.partition) {
+        let lightens = heaviest(&next) < LIGHTER * heaviest(&among.partition);
+        // Where there is nothing to gain, it is not tried all the time.
+        among.bears = if lightens { LOST_AT_MOST } else { (2.0 * among.bears).min(MOST_BORNE) };
+        if lightens {
             among.partition = next;
             among.moves = true;
-            // All particles may have to move.
             among.named.clear();
             self.workspace.active.forget_owners();
-            self.workspace.listed = false;
         }
     }
 
@@ -473,6 +472,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             write_particles((body, particles), &by_rank, &mut messages);
             let places: Vec<u32> = of_body.iter().map(|one| one.particle).collect();
             let moves = particles.take_out(&places);
+            if particles.is_empty() {
+                particles.fit();
+            }
             self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(moves.len()));
             let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
             self.workspace.active.renumber(body, &moves, base);
@@ -497,7 +499,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn cover_blocks(&mut self, blocks: Blocks) -> Blocks {
         let mut among = self.among.take().expect("there are other ranks");
         let rank = among.ranks.rank();
-        let own = blocks == Blocks::New || !self.workspace.listed;
+        let own = blocks == Blocks::New || !self.workspace.listed || among.moves;
         if own {
             among.names = self.workspace.active.named(rank, |block| among.partition.owner(block));
         }
@@ -514,8 +516,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Sends the guests of the step before away.
     pub(super) fn dismiss_guests(&mut self) {
-        self.workspace.active.dismiss_guests();
-        self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
+        for host in self.workspace.active.dismiss_guests() {
+            self.state.bodies[host as usize].particles.dismiss_guests();
+        }
     }
 
     /// What contact looks at of particles, where it knows how long they still move before it acts on them or not.
@@ -618,8 +621,6 @@ fn read_particles<T: Real, const D: usize>(
 
 /// Refuses what ranks cannot share yet.
 pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
-    let is_linear = scene.discretization.basis == BasisKind::Linear;
-    let regression = |rule: &ContactRule| rule.law == ContactLaw::Regression && is_linear;
     let over_arrays = |material: &NamedMaterial| match material.law {
         Material::Custom(custom) => custom.law().over_arrays().is_some(),
         _ => false,
@@ -633,7 +634,6 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         ("bodies.rigid", "a function from outside", scene.bodies.iter().any(moves_by_function)),
         ("loads", "a function from outside", scene.loads.iter().any(by_function)),
         ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
-        ("contact", "`regression` with linear functions", scene.contact.iter().any(regression)),
     ];
     let found = refused.into_iter().find(|(.., is_there)| *is_there);
     found.map_or(Ok(()), |(key, found, _)| {

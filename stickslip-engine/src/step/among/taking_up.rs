@@ -1,16 +1,14 @@
 //! A saved state, which ranks take up: each some of its particles, which then go to those that own their blocks.
 
-use super::{Home, read_particles, write_particles};
+use super::{Home, read_particles, walk, write_particles};
 use crate::basis::Basis;
 use crate::door::{NotTakenUp, RestoreError, SavedShare, SavedState};
 use crate::lanes::Laned;
-use crate::ranks::{Message, Partition, Ranks, combined, gathered, message_to};
+use crate::ranks::{Census, Message, Ranks, combined, gathered, message_to};
 use crate::scene::Scene;
 use crate::step::Engine;
-use crate::step::build::walk;
 use crate::step::saving::{append, began_at};
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Finds the shares of a saved state that a rank takes up, and shows them one after the other.
@@ -55,12 +53,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let own = found.map_err(NotTakenUp::Unfound).and(taken.map_err(NotTakenUp::from));
         first_problem(&*ranks, own)?;
 
-        let mut loads: HashMap<[i32; D], u64> = HashMap::new();
+        let mut census = Census::new(self.settings.lattice.periods);
         let mut of_bodies = Vec::new();
-        for body in &self.state.bodies {
+        for (i, body) in self.state.bodies.iter().enumerate() {
             let particles = &body.particles;
             let blocks = (0..particles.len()).map(|particle| self.block_of(particles, particle));
-            blocks.for_each(|block| *loads.entry(block).or_default() += 1);
+            blocks.for_each(|block| census.count(i, block));
             let first = (particles.numbers().iter().zip(0..)).min();
             let first = first.map(|(&number, place)| (number, self.block_of(particles, place).to_vec()));
             let mixed =
@@ -94,10 +92,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         first_problem(&*ranks, self.find_twins(&*ranks, rest).map_err(NotTakenUp::from))?;
 
         let block = |at: &[i32]| std::array::from_fn(|k| at[k]);
-        let own: Vec<(Vec<i32>, u64)> = loads.into_iter().map(|(at, load)| (at.to_vec(), load)).collect();
-        let loads = gathered(&*ranks, &own).concat();
-        let loads = loads.iter().map(|(at, load)| (block(at), *load));
-        let partition = Partition::balanced::<D>(ranks.count(), None, loads);
+        let partition = census.of_all(&*ranks).partition(&*ranks);
         let home = |(body, &filled): (Found, &usize)| {
             let rank =
                 body.first.filter(|_| filled > 0).map_or(0, |(_, at)| partition.owner::<D>(block(&at)));
@@ -174,7 +169,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Looks whether particles began where the scene has them begin.
     fn check_starts(&self, scene: &Scene) -> Result<(), RestoreError> {
         for ((body, own), &filled) in scene.bodies.iter().zip(&self.state.bodies).zip(&self.settings.filled) {
-            if filled > 0 && !began_at(&own.particles, walk(scene, body)) {
+            let is_known = filled > 0 && !own.particles.is_empty();
+            if is_known && !began_at(&own.particles, walk(scene, body)) {
                 return Err(RestoreError(format!(
                     "body `{}` began elsewhere than it does in the scene",
                     own.name

@@ -175,7 +175,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         mechanism.gravity = gravity;
         mechanism.before.clone_from(&self.state.touch_forces);
         mechanism.bodies.clear();
-        mechanism.bodies.extend((0..bodies.len()).filter_map(of));
+        mechanism.bodies.extend(self.settings.rigid.iter().filter_map(|&body| of(body)));
         mechanism.links.clear();
         mechanism.links.extend(self.settings.joints.iter().map(|joint| Link::new(joint, bodies)));
     }
@@ -239,7 +239,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let packed = self.settings.joints.is_empty()
             && self.needs_no_grid()
             && sweeps::packed(self.state.touch_forces.len());
-        let motions = self.state.bodies.iter().map(|body| body.motion.as_ref()).enumerate();
+        let motions = self.settings.rigid.iter().map(|&body| (body, self.state.bodies[body].motion.as_ref()));
         let free =
             motions.filter_map(|(body, motion)| Some((body, motion.filter(|it| it.as_free().is_some())?)));
         free.map(move |(body, motion)| {
