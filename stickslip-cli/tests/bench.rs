@@ -48,6 +48,7 @@ fn a_benchmark_prints_tables_and_writes_json() {
         "skipped",
         "end_to_end",
         "on_ranks",
+        "weak_scaling",
         "models",
         "peers",
         "goals",
@@ -62,6 +63,10 @@ fn a_benchmark_prints_tables_and_writes_json() {
             .iter()
             .all(|shared| (shared["bytes"].as_f64() > Some(0.0)) && shared["speed"].as_f64() > Some(0.0))
     );
+    let grown = record["weak_scaling"].as_array().unwrap();
+    let cores = std::thread::available_parallelism().unwrap().get() as u64;
+    assert!(grown.iter().all(|grown| ranks(grown) <= Some(cores) && grown["particle"].as_f64() > Some(0.0)));
+    assert_eq!(grown.iter().filter(|grown| ranks(grown) == Some(2)).count(), if cores > 1 { 3 } else { 0 });
     assert_eq!(keys(&record["machine"]), ["processor", "cores", "instructions", "limits"]);
     assert_eq!(record["machine"]["limits"].as_array().unwrap().len(), 2, "one thread, and two");
     let results = record["results"].as_array().unwrap();

@@ -73,7 +73,7 @@ pub struct BenchSample {
     pub memory: Option<u64>,
     /// Part of the repetitions' wall time in which the threads together had a core, over the number of threads.
     pub at_work: Option<f64>,
-    /// What each rank had and did.
+    /// What each rank had, and did in all repetitions.
     #[serde(default)]
     pub shares: Vec<RankShare>,
     /// The sum of the state before the first step that counts, which is always the same one.
@@ -156,7 +156,6 @@ fn take(order: &Order) -> Result<BenchSample, Failure> {
                 ..BenchSample::default()
             };
             step((&loaded.scene, &mut *simulation), effort, &mut sample)?;
-            sample.shares = simulation.shares();
             Ok(sample)
         });
     }
@@ -192,13 +191,15 @@ fn step(
     advance(simulation, effort.warm_up)?;
     sample.steps = effort.steps_in(advance(simulation, 1)?);
     sample.sum = present_state_sum(scene, simulation);
-    let before = verbs(simulation);
+    let (before, shares) = (verbs(simulation), simulation.shares());
     let core_time = memory::core_time();
     for _ in 0..effort.repetitions {
         sample.repetitions.push(advance(simulation, sample.steps)?);
     }
     let offered = rayon::current_num_threads() as f64 * sample.repetitions.iter().sum::<f64>();
     sample.at_work = memory::core_time().zip(core_time).map(|(after, before)| (after - before) / offered);
+    sample.shares = simulation.shares();
+    sample.shares.iter_mut().zip(shares).for_each(|(share, before)| *share = share.since(before));
     sample.verbs = verbs(simulation);
     for (verb, seconds) in &mut sample.verbs {
         *seconds -= before.iter().find(|(name, _)| name == verb).map_or(0.0, |(_, seconds)| *seconds);

@@ -3,7 +3,7 @@
 //! The ranks are threads of a process whose only way to each other are messages ([`stickslip::ranks::Threads`]): what
 //! they send is what processes send, but for the time that a network takes.
 
-use super::measure::{BenchTask, Effort, Order};
+use super::measure::{BenchSample, BenchTask, Effort, Order};
 use super::problems::{BLOCKS_IN_CONTACT, BenchCase, BenchExtent, BenchScheme, cases};
 use super::record::median;
 use crate::failure::Failure;
@@ -57,12 +57,14 @@ pub fn problems(extent: BenchExtent) -> Vec<BenchCase> {
 }
 
 impl OnRanks {
-    /// Measures a problem on 1, 2 and 4 ranks by turns with as many threads, so often.
+    /// Measures a problem on 1, 2 and 4 ranks, and on 8, 16 and so on if there are as many cores, by turns with as many
+    /// threads, so often.
     ///
     /// # Errors
     /// A measurement fails, or ranks end in other bits than threads.
     pub fn measure(case: &BenchCase, effort: Effort, turns: usize) -> Result<Vec<Self>, Failure> {
-        [1, 2, 4].into_iter().map(|ranks| Self::of(case, (effort, turns), ranks)).collect()
+        let counts = (0..).map(|power| 1 << power).take_while(|&ranks| ranks <= cores().max(4));
+        counts.map(|ranks| Self::of(case, (effort, turns), ranks)).collect()
     }
 
     fn of(case: &BenchCase, (mut effort, turns): (Effort, usize), ranks: usize) -> Result<Self, Failure> {
@@ -94,7 +96,6 @@ impl OnRanks {
         let mean = |of: &dyn Fn(&RankShare) -> f64| shares.iter().map(of).sum::<f64>() / ranks as f64;
         let computed = mean(&|share| share.computed);
         let slowest = shares.iter().map(|share| share.computed).fold(0.0, f64::max);
-        let steps = |share: &RankShare| share.steps.max(1) as f64;
         Ok(OnRanks {
             ranks,
             particles,
@@ -102,10 +103,10 @@ impl OnRanks {
             speed: median(&threads) / median(&seconds),
             threads,
             seconds,
-            bytes: mean(&|share| share.traffic.bytes as f64 / steps(share)),
+            bytes: mean(&|share| share.traffic.bytes as f64 / steps_of(share)),
             modelled: case.scheme.halo(particles, ranks),
-            messages: mean(&|share| share.traffic.messages as f64 / steps(share)),
-            computed: mean(&|share| share.computed / steps(share)),
+            messages: mean(&|share| share.traffic.messages as f64 / steps_of(share)),
+            computed: mean(&|share| share.computed / steps_of(share)),
             waiting: mean(&|share| {
                 let waited = share.traffic.waited;
                 waited / (waited + share.computed).max(f64::MIN_POSITIVE)
@@ -116,7 +117,115 @@ impl OnRanks {
     }
 }
 
-/// A block, and what the other rank has: as many particles in one body, or in grains of eight each.
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// A problem that grows with the ranks, against as many that have nothing to do with each other side by side: cores
+/// share what memory gives, so one that is alone computes faster.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WeakScaling {
+    /// The problem, in a few words, as it is for one rank.
+    pub problem: String,
+    /// Ranks, of one thread each, and each with a core.
+    pub ranks: usize,
+    /// Particles of all of them.
+    pub particles: usize,
+    /// Wall time of a step by the ranks, repetition by repetition [s].
+    pub seconds: Vec<f64>,
+    /// Time in which a rank computed in a step, the mean over ranks [s].
+    pub computed: f64,
+    /// Time in which a particle is computed in a step by ranks that are alone, side by side [s].
+    pub particle: f64,
+    /// What a rank sends in a step, the mean over ranks [bytes].
+    pub bytes: f64,
+    /// The same by the model in the book, without what contact adds [bytes].
+    pub modelled: f64,
+    /// Time in which the slowest rank computed over the mean.
+    pub imbalance: f64,
+}
+
+impl WeakScaling {
+    /// Measures a problem on 2, 4, 8 ranks and so on as far as there are cores, so often: `grown` is the problem with
+    /// so many times as many particles.
+    ///
+    /// # Errors
+    /// A measurement fails.
+    pub fn measure(
+        case: &BenchCase,
+        grown: &dyn Fn(usize) -> BenchCase,
+        (effort, turns): (Effort, usize),
+    ) -> Result<Vec<Self>, Failure> {
+        let counts = (1..).map(|power| 1 << power).take_while(|&ranks| ranks <= cores());
+        counts.map(|ranks| Self::of((case, &grown(ranks)), (effort, turns), ranks)).collect()
+    }
+
+    fn of(
+        (case, grown): (&BenchCase, &BenchCase),
+        (effort, turns): (Effort, usize),
+        ranks: usize,
+    ) -> Result<Self, Failure> {
+        let problem = case.label();
+        tell!("P7 {problem}, grown to {ranks} ranks ...");
+        let order = |case: &BenchCase, ranks: usize| Order {
+            scene: case.scene.clone(),
+            overrides: Vec::new(),
+            threads: 1,
+            task: BenchTask::Ranks(effort, ranks),
+        };
+        let (mut apart, mut shared, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..turns {
+            apart.extend(side_by_side(&order(case, 1), ranks)?);
+            let sample = order(grown, ranks).measure()?;
+            seconds.extend(sample.repetitions.iter().map(|time| time / sample.steps as f64));
+            shared.push(sample);
+        }
+        let of_shares = |of: &dyn Fn(&RankShare) -> f64| -> Vec<f64> {
+            shared.iter().flat_map(|sample| &sample.shares).map(|share| of(share) / steps_of(share)).collect()
+        };
+        let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+        let computed = of_shares(&|share| share.computed);
+        let slowest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max) / mean(shares);
+        let imbalances: Vec<f64> = computed.chunks(ranks).map(slowest).collect();
+        let per_particle = |sample: &BenchSample| {
+            let share = sample.shares.first().copied().unwrap_or_default();
+            share.computed / steps_of(&share) / sample.particles as f64
+        };
+        let particles = shared.first().map_or(0, |sample| sample.particles);
+        Ok(WeakScaling {
+            problem,
+            ranks,
+            particles,
+            seconds,
+            computed: mean(&computed),
+            particle: median(&apart.iter().map(per_particle).collect::<Vec<_>>()),
+            bytes: mean(&of_shares(&|share| share.traffic.bytes as f64)),
+            modelled: case.scheme.halo(particles, ranks),
+            imbalance: median(&imbalances),
+        })
+    }
+
+    /// How much of what ranks that are alone do is done by these.
+    pub fn efficiency(&self) -> f64 {
+        self.particle * self.particles as f64 / self.ranks as f64 / median(&self.seconds)
+    }
+}
+
+fn steps_of(share: &RankShare) -> f64 {
+    share.steps.max(1) as f64
+}
+
+/// So many processes that measure the same side by side.
+fn side_by_side(order: &Order, count: usize) -> Result<Vec<BenchSample>, Failure> {
+    let samples: Vec<_> = std::thread::scope(|scope| {
+        let started: Vec<_> = (0..count).map(|_| scope.spawn(|| order.measure())).collect();
+        started.into_iter().map(|one| one.join().expect("a measurement does not panic")).collect()
+    });
+    samples.into_iter().collect()
+}
+
+/// A block, and what the other rank has: as many particles in the same places, in grains of eight each or in strings of
+/// such grains.
 const BLOCK: &str = r#"
 [space]
 dimension = "3d"
@@ -133,22 +242,36 @@ shape.box = { min = [-48, 0, 0], max = [-32, 16, 16] }
 [[bodies]]
 material = "sand"
 "#;
-const OTHER_BLOCK: &str = r#"
-name = "other block"
-shape.box = { min = [32, 0, 0], max = [48, 16, 16] }
-"#;
 const GRAINS: &str = r#"
 name = "grain {i} {j} {k}"
 repeat = { i = 16, j = 16, k = 16 }
 shape.box = { min = ["4 * i + 1", "4 * j + 1", "4 * k + 1"], max = ["4 * i + 2", "4 * j + 2", "4 * k + 2"] }
 "#;
 
+/// As many grains on each string.
+const ON_A_STRING: usize = 16;
+
+/// The same grains on strings along the last axis, a body each.
+fn strings_of_grains() -> String {
+    let ends = |k: usize| [4 * k + 1, 4 * k + 2].map(|z| format!("[\"4 * i + 1\", \"4 * j + 1\", {z}]"));
+    let grain = |k: usize| {
+        let [min, max] = ends(k);
+        format!("{{ box = {{ min = {min}, max = {} }} }}", max.replace("+ 1", "+ 2"))
+    };
+    let grains: Vec<String> = (0..ON_A_STRING).map(grain).collect();
+    format!(
+        "name = \"string {{i}} {{j}}\"\nrepeat = {{ i = 16, j = 16 }}\nshape.union = [{}]\n",
+        grains.join(", ")
+    )
+}
+
 /// Before ranks compare their times, and the one with the grains would give some away.
 const UNDIVIDED: Effort = Effort { warm_up: 1, repetitions: 1, least: 12, steps: 12, seconds: 0.0 };
 /// The least of so many measurements counts: whatever else a machine does makes it longer.
 const TIMES: usize = 3;
 
-/// What computing a step takes for a body that another rank has: a block's rank beside grains and beside a block [s].
+/// What computing a step takes for a body that another rank has [s]: a block's rank beside grains, and beside the same
+/// grains in fewer bodies. What the other rank does with its memory slows the block in both.
 ///
 /// # Errors
 /// A measurement fails.
@@ -162,17 +285,28 @@ pub fn body_elsewhere(extent: BenchExtent) -> Result<f64, Failure> {
             let task = BenchTask::Ranks(UNDIVIDED, 2);
             let found = Order { scene: scene.clone(), overrides: Vec::new(), threads: 1, task }.measure()?;
             let first = found.shares.first().copied().unwrap_or_default();
-            (least, bodies) = (least.min(first.computed / first.steps.max(1) as f64), found.bodies);
+            (least, bodies) = (least.min(first.computed / steps_of(&first)), found.bodies);
         }
         Ok((least, bodies))
     };
-    let ((few, two), (many, all)) = (computed(OTHER_BLOCK)?, computed(GRAINS)?);
-    Ok(((many - few) / (all - two) as f64).max(0.0))
+    let ((with_few, few), (with_many, many)) = (computed(&strings_of_grains())?, computed(GRAINS)?);
+    Ok(((with_many - with_few) / (many - few) as f64).max(0.0))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The other rank has the same particles in the same places, in fewer bodies or in more.
+    #[test]
+    fn strings_have_the_grains() {
+        let parse =
+            |other: &str| stickslip::scene::parse("bench", &[BLOCK, other].concat(), &[]).unwrap().scene;
+        let [few, many] = [&*strings_of_grains(), GRAINS].map(parse);
+        assert_eq!([few.bodies.len(), many.bodies.len()], [1 + 256, 1 + 4096]);
+        let particles = [&few, &many].map(|scene| stickslip::check::report(scene).unwrap().particles);
+        assert_eq!(particles, [2 * 32_768; 2]);
+    }
 
     #[test]
     fn three_problems_are_shared() {

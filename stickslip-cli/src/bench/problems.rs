@@ -164,6 +164,23 @@ pub fn cases(extent: BenchExtent, threads: usize) -> Vec<BenchCase> {
     cases
 }
 
+/// A case of P1, P2 or P3 with about so many times as many particles, in one shape of the same proportions.
+pub fn grown(case: &BenchCase, extent: BenchExtent, times: usize) -> BenchCase {
+    let longer = (times as f64).cbrt();
+    // Whole blocks of four cells, which ranks share out.
+    let cells = 4 * (extent.cells() as f64 * longer / 4.0).round() as usize;
+    let scheme = case.scheme;
+    let (expected, scene) = match case.problem {
+        "P1" => cube(scheme, cells, 32),
+        "P2" => (8 * cells.pow(3), with(BLOCKS, scheme, &[("cells", &cells)])),
+        _ => {
+            let side = ((case.expected / BALL) as f64 * times as f64).cbrt().round() as usize;
+            (BALL * side.pow(3), balls(scheme, side))
+        }
+    };
+    BenchCase { scene, expected, ..case.clone() }
+}
+
 /// In which ways P1 is computed.
 fn schemes(extent: BenchExtent) -> Vec<BenchScheme> {
     let mut schemes = Vec::new();
@@ -249,6 +266,19 @@ mod tests {
         for case in cases(BenchExtent::Tiny, 2) {
             let loaded = stickslip::scene::parse("bench", &case.scene, &[]).unwrap_or_else(|e| panic!("{e}"));
             stickslip::check::problems(&loaded.scene).unwrap_or_else(|e| panic!("{case:?}: {e:?}"));
+        }
+    }
+
+    /// Twice as many particles within a quarter: balls and blocks are whole.
+    #[test]
+    fn cases_grow() {
+        for case in cases(BenchExtent::Quick, 1).iter().filter(|case| case.expected > 100_000) {
+            if matches!(case.problem, "P1" | "P2" | "P3") && !case.variant.contains("without") {
+                let grown = grown(case, BenchExtent::Quick, 2);
+                let times = grown.expected as f64 / case.expected as f64;
+                assert!((1.5..2.5).contains(&times), "{}: {times}", case.label());
+                assert_ne!(grown.scene, case.scene);
+            }
         }
     }
 

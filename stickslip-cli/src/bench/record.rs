@@ -3,7 +3,7 @@
 use super::goals::Goal;
 use super::limits::Limits;
 use super::measure::BenchSample;
-use super::on_ranks::OnRanks;
+use super::on_ranks::{OnRanks, WeakScaling};
 use super::problems::BenchCase;
 use super::scaling::StepModel;
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,8 @@ pub struct BenchRecord {
     pub end_to_end: Vec<EndToEnd>,
     /// Problem P7.
     pub on_ranks: Vec<OnRanks>,
+    /// Problem P7, growing with the ranks.
+    pub weak_scaling: Vec<WeakScaling>,
     /// What a step of these takes by the model that was fitted to them.
     pub models: Vec<StepModel>,
     /// Other programs on problem P1.

@@ -177,6 +177,36 @@ impl BenchRecord {
                 format!("{:.2}", shared.imbalance),
             ]);
         }
+        let mut weak = TextTable::new(&[
+            "<problem",
+            "particles",
+            "ranks",
+            "alone ms",
+            "ranks ms",
+            "by model",
+            "efficiency",
+            "kB sent",
+            "by model",
+            "imbalance",
+        ]);
+        for grown in &self.weak_scaling {
+            let model = self.models.iter().find(|model| model.problem == grown.problem);
+            let modelled =
+                model.map_or(f64::NAN, |model| model.without_network(grown.ranks, grown.particles));
+            let milliseconds = |time: f64| format!("{:.2}", 1e3 * time);
+            weak.row([
+                grown.problem.clone(),
+                grown.particles.to_string(),
+                grown.ranks.to_string(),
+                milliseconds(grown.particle * grown.particles as f64 / grown.ranks as f64),
+                milliseconds(median(&grown.seconds)),
+                milliseconds(modelled),
+                percent(grown.efficiency()),
+                format!("{:.0}", grown.bytes / 1e3),
+                format!("{:.0}", grown.modelled / 1e3),
+                format!("{:.2}", grown.imbalance),
+            ]);
+        }
         let mut models = TextTable::new(&[
             "<model",
             "ns a particle",
@@ -203,9 +233,10 @@ impl BenchRecord {
         }
         format!(
             "P7, a step by ranks of one thread against as many threads of one process, with the same bits; what a rank \
-             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\nBy the \
-             model of a step, {}: efficiency with 10^6\nparticles a rank, and the part of borders in a step.\n\
-             {models}\n",
+             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\n\
+             The same grown with the ranks, against as many ranks that are alone, side by side.\n{weak}\n\
+             By the model of a step, {}: efficiency with 10^6\nparticles a rank, and the part of borders in a \
+             step.\n{models}\n",
             CLUSTER.name
         )
     }

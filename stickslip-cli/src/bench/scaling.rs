@@ -11,7 +11,7 @@
 //! counts in full, so the model is not too good. What it leaves out: output, and the moments in which the grid is
 //! shared out anew.
 
-use super::on_ranks::OnRanks;
+use super::on_ranks::WeakScaling;
 use super::problems::BenchScheme;
 use crate::chart::{Chart, Curve, Panel};
 use crate::drawing::body_color;
@@ -31,6 +31,9 @@ pub struct Network {
 /// InfiniBand HDR: 200 Gbit/s a machine, for 16 ranks.
 pub const CLUSTER: Network =
     Network { name: "InfiniBand HDR, 16 ranks a machine", latency: 1.5e-6, bandwidth: 25e9 / 16.0 };
+
+/// None at all.
+const WITHIN_A_PROCESS: Network = Network { name: "none", latency: 0.0, bandwidth: f64::INFINITY };
 
 /// The model of a step of one problem.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -73,23 +76,27 @@ impl StepTime {
 }
 
 impl StepModel {
-    /// Fits the model to a problem on one rank, on two and on four; a body elsewhere takes `body` [s].
-    pub fn fit(shared: &[OnRanks], scheme: BenchScheme, body: f64) -> Option<Self> {
-        let alone = shared.iter().find(|shared| shared.ranks == 1)?;
-        let two = shared.iter().find(|shared| shared.ranks == 2)?;
-        let several = || shared.iter().filter(|shared| shared.ranks > 1 && shared.modelled > 0.0);
-        let count = several().count() as f64;
-        let particle = alone.computed / alone.particles as f64;
-        let borders = two.computed - particle * two.particles as f64 / 2.0;
+    /// Fits the model to a problem that grows with the ranks, as each with a core has it, and of which so many
+    /// particles make a body; a body elsewhere takes `body` [s].
+    ///
+    /// What ranks compute beyond their particles is put down to the bytes that they send, by least squares. A particle
+    /// takes what it does on all cores, where as many ranks compute side by side that are alone.
+    pub fn fit(grown: &[WeakScaling], scheme: BenchScheme, (bodies, body): (f64, f64)) -> Option<Self> {
+        let last = grown.last()?;
+        let borders = |grown: &WeakScaling| {
+            let beyond = grown.computed - grown.particle * grown.particles as f64 / grown.ranks as f64;
+            [beyond * grown.bytes, grown.bytes * grown.bytes]
+        };
+        let [beyond, bytes] = grown.iter().map(borders).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        let with_contact = grown.iter().map(|grown| grown.bytes / grown.modelled).sum::<f64>();
         Some(StepModel {
-            problem: alone.problem.clone(),
-            particle,
-            byte: (borders / two.bytes).max(0.0),
+            problem: last.problem.clone(),
+            particle: last.particle,
+            byte: (beyond / bytes.max(f64::MIN_POSITIVE)).max(0.0),
             body,
-            // More ranks than cores take turns: their imbalance is that of the system.
-            imbalance: two.imbalance.max(1.0),
-            with_contact: several().map(|shared| shared.bytes / shared.modelled).sum::<f64>() / count,
-            bodies: alone.bodies as f64 / alone.particles as f64,
+            imbalance: grown.iter().map(|grown| grown.imbalance).fold(1.0, f64::max),
+            with_contact: with_contact / grown.len() as f64,
+            bodies,
             scheme,
         })
     }
@@ -109,6 +116,13 @@ impl StepModel {
             sending: sent / network.bandwidth,
             waiting: if ranks > 1.0 { network.latency * (9.0 + 6.0 * deep) } else { 0.0 },
         }
+    }
+
+    /// What a step of so many ranks takes that have so many particles together, and send messages within a process [s].
+    pub fn without_network(&self, ranks: usize, particles: usize) -> f64 {
+        let StepTime { computing, borders, .. } =
+            self.step(ranks as f64, particles as f64 / ranks as f64, WITHIN_A_PROCESS);
+        computing + borders
     }
 
     fn imbalance_of(&self, ranks: f64) -> f64 {
@@ -187,21 +201,17 @@ const STRONG: f64 = 2e9;
 mod tests {
     use super::*;
 
-    fn shared(ranks: usize, computed: f64, bytes: f64) -> OnRanks {
+    fn grown(ranks: usize, computed: f64, bytes: f64) -> WeakScaling {
         let scheme = BenchScheme::default();
-        OnRanks {
+        WeakScaling {
             problem: "P1".to_owned(),
             ranks,
             particles: 1_000_000,
-            bodies: 100,
-            threads: vec![0.1],
             seconds: vec![0.1],
-            speed: 1.0,
+            computed,
+            particle: 1e-7,
             bytes,
             modelled: scheme.halo(1_000_000, ranks),
-            messages: 5.0,
-            computed,
-            waiting: 0.0,
             imbalance: 1.0,
         }
     }
@@ -211,13 +221,13 @@ mod tests {
     fn the_model_gives_back_what_was_measured() {
         let scheme = BenchScheme::default();
         let halo = scheme.halo(1_000_000, 2);
-        let measured = [shared(1, 0.1, 0.0), shared(2, 0.06, 2.0 * halo)];
-        let model = StepModel::fit(&measured, scheme, 1e-9).unwrap();
-        let free = Network { name: "none", latency: 0.0, bandwidth: f64::INFINITY };
-        let [one, two] = [model.step(1.0, 1e6, free), model.step(2.0, 5e5, free)];
+        let measured = [grown(2, 0.06, 2.0 * halo)];
+        let model = StepModel::fit(&measured, scheme, (1e-4, 1e-9)).unwrap();
+        let [one, two] = [model.step(1.0, 1e6, WITHIN_A_PROCESS), model.step(2.0, 5e5, WITHIN_A_PROCESS)];
         assert!((one.sum() - 0.1).abs() < 1e-12, "{one:?}");
         assert!((two.computing + two.borders - 0.06).abs() < 1e-12, "{two:?}");
         assert!((two.bodies - 1e-7).abs() < 1e-15, "{two:?}");
+        assert!((model.without_network(2, 1_000_000) - 0.06).abs() < 1e-12);
         let slow = model.step(8.0, 1e6, Network { name: "slow", latency: 1e-3, bandwidth: 1e6 });
         assert!((slow.waiting - 27e-3).abs() < 1e-12 && slow.sending > 1.0, "{slow:?}");
     }

@@ -6,9 +6,9 @@ use super::limits::{self, Care};
 use super::measure::{BenchSample, BenchTask, Effort, Order};
 use super::memory;
 use super::multiply_add::instructions;
-use super::on_ranks::{self, OnRanks};
+use super::on_ranks::{self, OnRanks, WeakScaling};
 use super::peers::Peers;
-use super::problems::{BenchCase, BenchExtent, cases};
+use super::problems::{BenchCase, BenchExtent, cases, grown};
 use super::record::{BenchRecord, Computer, Measured, Skipped};
 use super::scaling::StepModel;
 use crate::failure::Failure;
@@ -56,6 +56,7 @@ impl BenchSuite {
             skipped: Vec::new(),
             end_to_end: Vec::new(),
             on_ranks: Vec::new(),
+            weak_scaling: Vec::new(),
             models: Vec::new(),
             peers: Vec::new(),
             goals: Vec::new(),
@@ -80,8 +81,12 @@ impl BenchSuite {
             for case in on_ranks::problems(self.extent) {
                 let turns = if self.extent == BenchExtent::Tiny { 1 } else { TURNS_ON_RANKS };
                 let measured = OnRanks::measure(&case, self.effort(), turns)?;
-                record.models.extend(StepModel::fit(&measured, case.scheme, body));
+                let bigger = |times: usize| grown(&case, self.extent, times);
+                let grown = WeakScaling::measure(&case, &bigger, (self.effort(), turns))?;
+                let bodies = measured.first().map_or(0.0, |one| one.bodies as f64 / one.particles as f64);
+                record.models.extend(StepModel::fit(&grown, case.scheme, (bodies, body)));
                 record.on_ranks.extend(measured);
+                record.weak_scaling.extend(grown);
             }
         }
         if let Some((peers, python)) = self.peers.as_ref().zip(python) {
