@@ -167,8 +167,8 @@ pub fn cases(extent: BenchExtent, threads: usize) -> Vec<BenchCase> {
 /// A case of P1, P2 or P3 with about so many times as many particles, in one shape of the same proportions.
 pub fn grown(case: &BenchCase, extent: BenchExtent, times: usize) -> BenchCase {
     let longer = (times as f64).cbrt();
-    // Whole blocks of four cells, which ranks share out.
-    let cells = 4 * (extent.cells() as f64 * longer / 4.0).round() as usize;
+    // Whole blocks of four cells, which ranks share out; more than before.
+    let cells = (4 * (extent.cells() as f64 * longer / 4.0).round() as usize).max(extent.cells() + 4);
     let scheme = case.scheme;
     let (expected, scene) = match case.problem {
         "P1" => cube(scheme, cells, 32),

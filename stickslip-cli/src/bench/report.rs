@@ -231,13 +231,19 @@ impl BenchRecord {
                 percent(model.halo(1e6, CLUSTER)),
             ]);
         }
-        format!(
+        let strong = format!(
             "P7, a step by ranks of one thread against as many threads of one process, with the same bits; what a rank \
-             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\n\
-             The same grown with the ranks, against as many ranks that are alone, side by side.\n{weak}\n\
-             By the model of a step, {}: efficiency with 10^6\nparticles a rank, and the part of borders in a \
-             step.\n{models}\n",
-            CLUSTER.name
+             sends\nin a step, and by the model without contact; more ranks than cores take turns.\n{table}\n"
+        );
+        if self.weak_scaling.is_empty() {
+            return strong
+                + "On one core nothing is measured that grows with the ranks, and no model is fitted.\n\n";
+        }
+        let network = CLUSTER.name;
+        format!(
+            "{strong}The same grown with the ranks, against as many ranks that are alone, side by side.\n{weak}\n\
+             By the model of a step, {network}: efficiency with 10^6\nparticles a rank, and the part of borders in a \
+             step.\n{models}\n"
         )
     }
 

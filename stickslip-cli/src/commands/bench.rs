@@ -85,6 +85,11 @@ impl Arguments {
             )));
         }
         let all = std::thread::available_parallelism().map_or(1, usize::from);
+        if self.draw.is_some() && all < 2 {
+            return Err(Failure::Input(miette!(
+                "--draw: found 1 core; allowed: 2 or more, on which ranks are measured side by side"
+            )));
+        }
         let suite = BenchSuite {
             extent,
             only: self.only,
