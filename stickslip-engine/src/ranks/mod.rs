@@ -13,6 +13,7 @@ pub use threads::Threads;
 use crate::exact::ExactSum;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
 /// A message with the other rank: whom it is for, or who sent it.
@@ -37,6 +38,22 @@ pub fn combined<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X, jo
 pub fn added<X: AddAssign>(mut all: Vec<X>, others: Vec<X>) -> Vec<X> {
     all.iter_mut().zip(others).for_each(|(sum, other)| *sum += other);
     all
+}
+
+/// Of what each rank has for some, what this one gets, its own first.
+pub fn dealt<X: Serialize + DeserializeOwned>(
+    ranks: &dyn Ranks,
+    all: impl IntoIterator<Item = (usize, X)>,
+) -> Vec<X> {
+    let (mut here, mut others) = (Vec::new(), BTreeMap::<usize, Vec<X>>::new());
+    for (rank, one) in all {
+        if rank == ranks.rank() { &mut here } else { others.entry(rank).or_default() }.push(one);
+    }
+    let messages = others.iter().map(|(rank, some)| (*rank, bytes_of(some))).collect();
+    for (_, message) in ranks.exchange(messages) {
+        here.extend(read::<Vec<X>>(&message));
+    }
+    here
 }
 
 /// What each rank says, by rank.

@@ -1,6 +1,6 @@
 //! Which rank owns which block.
 
-use super::{Ranks, bytes_of, combined, read};
+use super::{Ranks, combined, dealt};
 use crate::grid::Periods;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
@@ -100,19 +100,11 @@ impl<const D: usize> Census<D> {
 
     /// The census of all ranks, each of which counted some particles, of the blocks that this one sees to.
     pub fn of_all(self, ranks: &dyn Ranks) -> Self {
+        let told =
+            |(block, counted): ([i32; D], Counted)| (seer(block, ranks.count()), (block.to_vec(), counted));
         let mut here = Census::new(self.periods);
-        let mut others: BTreeMap<usize, Vec<(Vec<i32>, Counted)>> = BTreeMap::new();
-        for (block, counted) in self.blocks {
-            match seer(block, ranks.count()) {
-                seer if seer == ranks.rank() => here.add(block, &counted),
-                seer => others.entry(seer).or_default().push((block.to_vec(), counted)),
-            }
-        }
-        let messages = others.iter().map(|(seer, told)| (*seer, bytes_of(told))).collect();
-        for (_, message) in ranks.exchange(messages) {
-            for (block, counted) in read::<Vec<(Vec<i32>, Counted)>>(&message) {
-                here.add(std::array::from_fn(|k| block[k]), &counted);
-            }
+        for (block, counted) in dealt(ranks, self.blocks.into_iter().map(told)) {
+            here.add(std::array::from_fn(|k| block[k]), &counted);
         }
         here
     }
@@ -242,8 +234,7 @@ fn find_cuts<const D: usize>(
     let mut places: Vec<Vec<i32>> = Vec::new();
     for (i, part) in (0..).zip(parts) {
         let crossings: [_; D] = std::array::from_fn(|axis| {
-            let along = layers.range((i, axis as u8, i32::MIN)..=(i, axis as u8, i32::MAX));
-            let along: Vec<(i32, [u64; 2])> = along.map(|(&(.., place), &layer)| (place, layer)).collect();
+            let along = along(&layers, (i, axis as u8));
             let whole: u64 = along.iter().map(|(_, [load, _])| load).sum();
             let wanted = whole as f64 * (part.ranks / 2) as f64 / part.ranks as f64;
             crossing(&along, wanted)
@@ -268,8 +259,7 @@ fn find_cuts<const D: usize>(
         }
         let rows = together(rows);
         for (i, place) in places.iter_mut().enumerate() {
-            let along = rows.range((i as u32, 0, i32::MIN)..=(i as u32, 0, i32::MAX));
-            let along: Vec<(i32, [u64; 2])> = along.map(|(&(.., place), &layer)| (place, layer)).collect();
+            let along = along(&rows, (i as u32, 0));
             let Some((at, before)) = crossing(&along, wanted[i]) else { continue };
             wanted[i] -= before;
             place.push(along[at].0);
@@ -289,16 +279,23 @@ fn find_cuts<const D: usize>(
 
 fn add(layers: &mut Layers, place: (u32, u8, i32), load: &BlockLoad) {
     let weight = load.load * if load.meets { CONTACT } else { 1 };
+    add_sums(layers, place, [load.load, weight]);
+}
+
+fn add_sums(layers: &mut Layers, place: (u32, u8, i32), [load, weight]: [u64; 2]) {
     let sums = layers.entry(place).or_default();
-    *sums = [sums[0] + load.load, sums[1] + weight];
+    *sums = [sums[0] + load, sums[1] + weight];
+}
+
+/// The layers of a part along an axis, by their places.
+fn along(layers: &Layers, (part, axis): (u32, u8)) -> Vec<(i32, [u64; 2])> {
+    let all = layers.range((part, axis, i32::MIN)..=(part, axis, i32::MAX));
+    all.map(|(&(.., place), &layer)| (place, layer)).collect()
 }
 
 /// Adds what two ranks say.
 fn join_layers(mut layers: Layers, others: Layers) -> Layers {
-    for (place, [load, weight]) in others {
-        let sums = layers.entry(place).or_default();
-        *sums = [sums[0] + load, sums[1] + weight];
-    }
+    others.into_iter().for_each(|(place, sums)| add_sums(&mut layers, place, sums));
     layers
 }
 

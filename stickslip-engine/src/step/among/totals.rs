@@ -4,7 +4,7 @@ use super::Among;
 use crate::body::{Body, TotalSums, Totals, TurningSums};
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
-use crate::ranks::{bytes_of, read};
+use crate::ranks::dealt;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_bytes::ByteBuf;
@@ -52,19 +52,10 @@ impl<T: Laned> Among<T> {
         own: impl Iterator<Item = (usize, PackedSums)>,
         round: &dyn Fn(&[PackedSums]) -> X,
     ) -> Arc<[X]> {
+        let of_home = own.map(|(body, sums)| (self.homes[body].rank as usize, (body, sums)));
         let mut here: BTreeMap<usize, Vec<PackedSums>> = BTreeMap::new();
-        let mut others: BTreeMap<usize, Vec<(usize, PackedSums)>> = BTreeMap::new();
-        for (body, sums) in own {
-            match self.homes[body].rank as usize {
-                home if home == self.ranks.rank() => here.entry(body).or_default().push(sums),
-                home => others.entry(home).or_default().push((body, sums)),
-            }
-        }
-        let messages = others.iter().map(|(home, sums)| (*home, bytes_of(sums))).collect();
-        for (_, message) in self.ranks.exchange(messages) {
-            for (body, sums) in read::<Vec<(usize, PackedSums)>>(&message) {
-                here.entry(body).or_default().push(sums);
-            }
+        for (body, sums) in dealt(&*self.ranks, of_home) {
+            here.entry(body).or_default().push(sums);
         }
         let found: Vec<(usize, X)> = here.iter().map(|(body, parts)| (*body, round(parts))).collect();
         let mut all = vec![X::default(); bodies];
