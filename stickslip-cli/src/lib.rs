@@ -57,21 +57,20 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     let ended = match (commands::Command::try_parse_from(words), together) {
         (Ok(command), None) => command.execute(),
         (Ok(command), Some(launched)) => launched.execute(command),
+        // The first one tells what is wrong. Launchers end all as soon as one ends with another code than 0: before it
+        // has told, if the others had its code.
+        (Err(_), Some(launched)) if !launched.is_first() => return 0,
         (Err(error), _) => {
-            // Once is enough. Nobody can be told of an output that takes nothing.
-            if together.is_none_or(ranks::Launched::is_first) {
-                let _ = error.print();
-            }
+            // Nobody can be told of an output that takes nothing.
+            let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(1);
         }
     };
     match ended {
-        Ok(()) => 0,
-        Err(failure) => {
-            if together.is_none_or(ranks::Launched::is_first) {
-                failure.print();
-            }
+        Err(failure) if together.is_none_or(ranks::Launched::is_first) => {
+            failure.print();
             failure.exit_code()
         }
+        _ => 0,
     }
 }

@@ -102,20 +102,20 @@ fn room() -> usize {
 }
 
 /// Shows the progress of a family of runs on standard error: a bar for all of them, or a line when one ends.
-pub struct Family {
+pub struct FamilyDisplay {
     bar: Option<ProgressBar>,
     shares: Vec<f64>,
     ended: usize,
 }
 
-impl Family {
+impl FamilyDisplay {
     /// A display for so many runs.
     pub fn new(runs: usize, terminal: bool) -> Self {
         let bar = terminal.then(|| ProgressBar::new(PARTS).with_style(style()));
         if let Some(bar) = &bar {
             bar.set_message(format!("0 of {runs} runs"));
         }
-        Family { bar, shares: vec![0.0; runs], ended: 0 }
+        FamilyDisplay { bar, shares: vec![0.0; runs], ended: 0 }
     }
 
     /// The run of this number has done this share.

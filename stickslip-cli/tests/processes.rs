@@ -5,6 +5,7 @@
 
 mod stickslip;
 
+use std::collections::BTreeMap;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use stickslip::{LONG, Ran, SHORT, Workplace, new_scene, outcome, ranks, record, with, with_results};
@@ -110,6 +111,45 @@ fn a_signal_stops_all_with_a_checkpoint() {
     assert!(one == several, "the run ends as one that nobody stopped");
 }
 
+/// Each process makes some runs of a family; the table is that of one process, and what failed is named once.
+#[test]
+fn processes_share_a_family_of_runs() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let words =
+        ["sweep", "scene.toml", "--set", "bodies[0].velocity=[0, 0],[0, 1e-3],[0, \"100 m/s\"],[1e-3, 0]"];
+    let short = ["--set", "cells_per_radius=2", "--set", "time.end=10 ms", "--jobs", "1", "--threads", "1"];
+    let words = with(&words, &short);
+    let alone = workplace.run(&with(&words, &["--out", "one"]));
+    let several = run(&workplace, 3, &with(&words, &["--out", "several"]));
+    for ran in [&alone, &several] {
+        assert_eq!(ran.code, Some(1), "{}", ran.stderr);
+        assert_eq!(ran.stderr.matches("1 of 4 runs failed").count(), 1, "{}", ran.stderr);
+        assert_eq!(ran.stdout.matches("3 of 4 runs finished").count(), 1, "{}", ran.stdout);
+    }
+    let rows = |folder: &str| {
+        let mut reader = csv::Reader::from_path(workplace.path(folder).join("sweep.csv")).unwrap();
+        let rows = reader.deserialize().map(|row| {
+            let mut row: BTreeMap<String, String> = row.unwrap();
+            row.remove("wall_time");
+            row
+        });
+        rows.collect::<Vec<_>>()
+    };
+    assert_eq!(rows("one"), rows("several"));
+    for row in rows("one").iter().filter(|row| row["status"] == "finished") {
+        let [one, several] =
+            ["one", "several"].map(|folder| outcome(&workplace.path(folder).join(&row["run"])));
+        assert!(one == several, "{row:?}");
+    }
+    // As if all had been killed while one run was on its way.
+    std::fs::remove_file(workplace.path("several/rows/bodies_0_.velocity=_0,_0_.csv")).unwrap();
+    let ran = run(&workplace, 2, &["sweep", "several", "--threads", "1"]);
+    assert_eq!(ran.code, Some(1), "{}", ran.stderr);
+    assert_eq!(ran.stderr.matches("2 of 2 runs").count(), 1, "two are left: {}", ran.stderr);
+    assert_eq!(rows("one"), rows("several"));
+}
+
 /// What is wrong is told once, with the exit code of one process.
 #[test]
 fn what_is_wrong_is_told_once() {
@@ -126,6 +166,7 @@ fn what_is_wrong_is_told_once() {
         (&["run", "scene.toml", "--no-such-flag"], 2, "--no-such-flag"),
         (&["run", "lost.toml", "--quiet"], 1, "left the domain"),
         (&["check", "lost.toml", "--no-such-flag"], 2, "--no-such-flag"),
+        (&["sweep", "scene.toml", "--set", "friction=0.3"], 2, "found one value for each name"),
     ] {
         let alone = workplace.run(words);
         let ran = run(&workplace, 3, words);

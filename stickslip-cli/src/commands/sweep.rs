@@ -6,12 +6,13 @@ use super::{assignment, load, say, stop_on_interrupt};
 use crate::chart::draw;
 use crate::drawing::DrawError;
 use crate::failure::Failure;
-use crate::progress::{Family, terminal};
-use crate::sweep::{self, Crew, Member, News, Plan, Sweep, SweepRecord, SweepRow, Variation};
+use crate::progress::{FamilyDisplay, terminal};
+use crate::ranks;
+use crate::sweep::{self, Crew, Family, Member, News, Plan, Sweep, SweepRecord, SweepRow, Variation};
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use stickslip::scene::Loaded;
 
@@ -46,11 +47,11 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "script")]
     gather: bool,
 
-    /// Runs at a time; as many as there are processors without this.
+    /// Runs at a time, in each process; as many as it has processors without this.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["script", "gather"])]
     jobs: Option<u16>,
 
-    /// Threads of all runs together; as many as there are processors without this.
+    /// Threads of all runs together, in each process; as many as it has processors without this.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["script", "gather"])]
     threads: Option<u16>,
 }
@@ -67,10 +68,10 @@ impl Arguments {
         // All scenes are read before anything is run or written: a mistake costs no time.
         let scene = std::path::absolute(plan.scene_file(&folder)).into_diagnostic().map_err(Failure::Run)?;
         let read = |member: Member| match load(&scene, &member.settings) {
-            Ok(loaded) => Ok((member, loaded)),
+            Ok(loaded) => Ok(Arc::new((member, loaded))),
             Err(error) => Err(Failure::input(error)),
         };
-        let members: Result<Vec<(Member, Loaded)>, Failure> =
+        let members: Result<Vec<Arc<(Member, Loaded)>>, Failure> =
             sweep::members(&plan.variations).into_iter().map(read).collect();
         let members = members?;
         if let Some(unknown) = self.only.iter().find(|&&number| number >= members.len()) {
@@ -79,7 +80,7 @@ impl Arguments {
                 "--only: found {unknown}; allowed: numbers from 0 to {last}"
             )));
         }
-        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone(), Some(plan));
+        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone(), Some(plan.clone()));
         let pending = |(member, loaded): &(Member, Loaded)| SweepRow {
             run: member.folder.clone(),
             status: "pending".to_owned(),
@@ -93,7 +94,9 @@ impl Arguments {
         };
         // One that begins runs everything; a script is for what is left of it.
         let stands = self.goes_on() || self.script;
-        let row = |each| Some(each).filter(|_| stands).and_then(ended).unwrap_or_else(|| pending(each));
+        let row = |each: &Arc<(Member, Loaded)>| {
+            Some(each).filter(|_| stands).and_then(|each| ended(each)).unwrap_or_else(|| pending(each))
+        };
         let rows: Vec<SweepRow> = members.iter().map(row).collect();
         if !self.goes_on() {
             let kept = rows.iter().filter(|row| row.is_finished()).map(|row| row.run.as_str());
@@ -106,8 +109,13 @@ impl Arguments {
         let is_considered = |number: &usize| self.only.is_empty() || self.only.contains(number);
         let left = |table: &Sweep| table.unfinished().into_iter().filter(is_considered).collect::<Vec<_>>();
         let wanted = if self.gather { Vec::new() } else { left(&table) };
-        let crew = self.crew(folder, scene, wanted.len())?;
-        self.run(&crew, &members, &wanted, &mut table)?;
+        let folder_of_all = std::path::absolute(&folder).into_diagnostic().map_err(Failure::Run)?;
+        let limits = [self.jobs, self.threads].map(|limit| limit.map(usize::from));
+        let family = Family { plan, folder: folder_of_all, scene, runs: wanted.len(), limits };
+        let share = wanted.len().div_ceil(ranks::count());
+        let places = (folder, family.scene.clone());
+        let crew = Crew::new(limits, (ranks::neighbours(), share), places, stop_on_interrupt()?);
+        self.run(&crew, (&family, &members), &wanted, &mut table)?;
         if self.only.is_empty() {
             draw_and_tell(&crew, &table)?;
         }
@@ -180,18 +188,11 @@ impl Arguments {
         Ok(())
     }
 
-    fn crew(&self, folder: PathBuf, scene: PathBuf, runs: usize) -> Result<Crew, Failure> {
-        let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
-        let threads = self.threads.map_or(processors, usize::from);
-        let jobs = self.jobs.map_or(threads, usize::from).clamp(1, runs.max(1));
-        Ok(Crew { jobs, threads: (threads / jobs).max(1), folder, scene, stop: stop_on_interrupt()? })
-    }
-
     /// Runs what is wanted, and writes what each run came to as it ends.
     fn run(
         &self,
         crew: &Crew,
-        members: &[(Member, Loaded)],
+        (family, members): (&Family, &[Arc<(Member, Loaded)>]),
         wanted: &[usize],
         table: &mut Sweep,
     ) -> Result<(), Failure> {
@@ -199,32 +200,27 @@ impl Arguments {
         if self.only.is_empty() {
             sweep::write_table(&crew.folder, table)?;
         }
-        let mut display = Family::new(wanted.len(), terminal());
+        let mut display = FamilyDisplay::new(wanted.len(), terminal());
         let place_in_family = |number: usize| wanted.iter().position(|&other| other == number).unwrap_or(0);
-        crew.run(members, wanted, |news| {
-            for each in news {
-                match each {
-                    News::Progress(number, share) => display.show(place_in_family(number), share),
-                    News::Ended(number, row) => {
-                        let place = &mut table.rows[number];
-                        *place =
-                            SweepRow { run: place.run.clone(), parameters: place.parameters.clone(), ..*row };
-                        display.ended(
-                            place_in_family(number),
-                            &format!("{}: {} {}", place.run, place.status, place.error),
-                        );
-                        let row = sweep::write_row(&crew.folder, &table.record, &table.rows[number]);
-                        let whole = self.only.is_empty().then(|| sweep::write_table(&crew.folder, table));
-                        // The first trouble counts; what can be written is, all the same.
-                        if let Err(trouble) = row.and(whole.unwrap_or(Ok(())))
-                            && written.is_ok()
-                        {
-                            written = Err(trouble);
-                        }
-                    }
+        let listen = |news| match news {
+            News::Progress(number, share) => display.show(place_in_family(number), share),
+            News::Left(_) => {}
+            News::Ended(number, row) => {
+                let place = &mut table.rows[number];
+                *place = SweepRow { run: place.run.clone(), parameters: place.parameters.clone(), ..*row };
+                let told = format!("{}: {} {}", place.run, place.status, place.error);
+                display.ended(place_in_family(number), &told);
+                let row = sweep::write_row(&crew.folder, &table.record, &table.rows[number]);
+                let whole = self.only.is_empty().then(|| sweep::write_table(&crew.folder, table));
+                // The first trouble counts; what can be written is, all the same.
+                if let Err(trouble) = row.and(whole.unwrap_or(Ok(())))
+                    && written.is_ok()
+                {
+                    written = Err(trouble);
                 }
             }
-        });
+        };
+        crew.run(members, wanted, (ranks::share_family(family).as_deref(), listen));
         display.finish();
         written
     }

@@ -2,13 +2,15 @@
 //!
 //! All of them are this program with the same words. The first does what these ask for. The others wait for the scenes
 //! that it simulates, read each for themselves, and have their part of the simulation ([`stickslip::shared`]): they
-//! write their pieces of files of particles, and say nothing but what is wrong with them.
+//! write their pieces of files of particles, and say nothing but what is wrong with them. Of a family of runs
+//! (`mpirun -n 8 stickslip sweep`) each makes some.
 
 #[cfg(feature = "mpi")]
 mod mpi;
 
 use crate::commands::Command;
 use crate::failure::Failure;
+use crate::sweep::Family;
 use miette::miette;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
@@ -71,9 +73,7 @@ impl Launched {
     /// Does what a command asks for by all processes together.
     pub fn execute(self, command: Command) -> Result<(), Failure> {
         match command {
-            // Each takes runs of its own.
-            Command::Sweep(_) => command.execute(),
-            Command::Run(_) | Command::Resume(_) => self.share(command),
+            Command::Run(_) | Command::Resume(_) | Command::Sweep(_) => self.share(command),
             _ if self.is_first() => command.execute(),
             _ => Ok(()),
         }
@@ -124,7 +124,7 @@ impl Launched {
                 failure.print();
                 mpi::Mpi::abort(i32::from(failure.exit_code()));
             }
-            while follow(&ranks, ranks.clone()) {}
+            while follow(&ranks, ranks.clone(), neighbours) {}
             return Ok(());
         }
         let _ = OTHERS.set(Others { ranks: ranks.clone(), here, neighbours });
@@ -156,6 +156,18 @@ pub fn use_threads(threads: Option<usize>, neighbours: usize) -> Result<(), Fail
     pool.build_global().into_diagnostic().map_err(Failure::Run)
 }
 
+/// Processes that work together here, this one among them.
+pub fn count() -> usize {
+    OTHERS.get().map_or(1, |others| others.ranks.count())
+}
+
+/// Has the others make their part of the runs of a family; they are given where there are any.
+pub fn share_family(family: &Family) -> Option<Arc<dyn Ranks>> {
+    let ranks = Arc::clone(&OTHERS.get()?.ranks);
+    ranks.hear_first(&bytes_of(&Task::Sweep(family.clone())));
+    Some(ranks)
+}
+
 /// Processes of the run that may run on the same processors, this one among them.
 pub fn neighbours() -> usize {
     OTHERS.get().map_or(1, |others| others.neighbours)
@@ -179,6 +191,8 @@ fn processors_allowed() -> Option<String> {
 enum Task {
     /// To share the simulation of a scene, which ends at this time [s].
     Simulate(Box<SceneSource>, f64),
+    /// To make some runs of a family.
+    Sweep(Family),
     /// Nothing more.
     End,
 }
@@ -213,11 +227,18 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
     lead.map_err(|problem| Failure::input(loaded.source.locate(problem)))
 }
 
-/// Shares what the first process simulates next; false if that is nothing.
+/// Shares what the first process does next; false if that is nothing.
 #[cfg(feature = "mpi")]
-fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>) -> bool {
+fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>, neighbours: usize) -> bool {
     let task = serde_json::from_slice(&here.hear_first(&[])).expect("all processes are the same program");
-    let Task::Simulate(source, end) = task else { return false };
+    let (source, end) = match task {
+        Task::Simulate(source, end) => (source, end),
+        Task::Sweep(family) => {
+            crate::sweep::among::follow(here, &family, neighbours);
+            return true;
+        }
+        Task::End => return false,
+    };
     let read = source.recorded().unwrap_or_else(|| source.load());
     let problem =
         read.as_ref().err().map(|error| format!("on {} cannot read the scene: {error}", mpi::Mpi::machine()));

@@ -1,11 +1,13 @@
-//! A family of runs: planned, run side by side, recorded in one table.
+//! A family of runs: planned, run side by side, by one process or several, recorded in one table.
 
+pub mod among;
 mod chart;
 mod plan;
 mod record;
 mod script;
 mod table;
 
+pub use among::Family;
 pub use chart::chart;
 pub use plan::{Member, Plan, Variation, members, varied};
 pub use record::{
@@ -17,16 +19,20 @@ pub use table::table;
 
 use crate::illustration::illustrate;
 use crate::jobs;
+use serde::{Deserialize, Serialize};
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::available_parallelism;
 use std::time::Duration;
 use stickslip::observe::{ArrivalRow, ContactRow, Results, SceneSource, Status};
+use stickslip::ranks::Ranks;
 use stickslip::run::{Checkpointing, RunError, RunOptions, Summary};
 use stickslip::scene::{Loaded, Parameter};
 
-/// How a family is run.
+/// How a process runs its part of a family.
 pub struct Crew {
     /// Runs at a time.
     pub jobs: usize,
@@ -44,11 +50,14 @@ pub struct Crew {
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(600);
 
 /// What happens to the run of this number.
+#[derive(Serialize, Deserialize)]
 pub enum News {
     /// It has come so far, as a share of its end time.
     Progress(usize, f64),
     /// It has ended.
     Ended(usize, Box<SweepRow>),
+    /// It has not begun, for the user stopped before.
+    Left(usize),
 }
 
 /// Values of the varied parameters in a scene: in SI units where they are numbers, else as they were given.
@@ -74,26 +83,69 @@ pub fn finished(
 }
 
 impl Crew {
+    /// For a family of which a process is to make about so many runs, and so many processes on the same processors: as
+    /// many at a time and as many threads as `limits` says, or as there are processors for it.
+    pub fn new(
+        [jobs, threads]: [Option<usize>; 2],
+        (neighbours, runs): (usize, usize),
+        (folder, scene): (PathBuf, PathBuf),
+        stop: Arc<AtomicBool>,
+    ) -> Self {
+        let processors = available_parallelism().map_or(1, NonZero::get) / neighbours;
+        let threads = threads.unwrap_or(processors).max(1);
+        let jobs = jobs.unwrap_or(threads).clamp(1, runs.max(1));
+        Crew { jobs, threads: (threads / jobs).max(1), folder, scene, stop }
+    }
+
     /// Runs those of the scenes that are `wanted`, by their numbers, side by side, each in its folder, and tells
     /// `listen` what happens, on this thread. One that was killed or stopped goes on from its newest checkpoint. Runs
-    /// that have not begun when the user stops are not begun.
-    pub fn run(&self, scenes: &[(Member, Loaded)], wanted: &[usize], listen: impl FnOnce(&Receiver<News>)) {
-        let next = AtomicUsize::new(0);
+    /// that have not begun when the user stops are not begun. Other processes run their part where there are any.
+    pub fn run(
+        &self,
+        scenes: &[Arc<(Member, Loaded)>],
+        wanted: &[usize],
+        (ranks, mut listen): (Option<&dyn Ranks>, impl FnMut(News)),
+    ) {
+        let scene_of = |number: usize| Ok(Arc::clone(&scenes[number]));
+        match ranks {
+            Some(ranks) => among::lead(ranks, (self, wanted), &scene_of, listen),
+            None => self.work(&scene_of, |begin, news| {
+                wanted.iter().for_each(|&number| begin.send(number).expect("threads take all numbers"));
+                drop(begin);
+                news.iter().for_each(&mut listen);
+            }),
+        }
+    }
+
+    /// Makes the runs whose numbers `direct` sends, with scenes that are found when they begin; `direct`, on this
+    /// thread, hears what happens to them.
+    fn work(
+        &self,
+        scene_of: &(dyn Fn(usize) -> Result<Arc<(Member, Loaded)>, String> + Sync),
+        direct: impl FnOnce(Sender<usize>, &Receiver<News>),
+    ) {
+        let (begin, numbers) = channel();
+        let numbers = &Mutex::new(numbers);
         let (sender, receiver) = channel();
+        let next = || numbers.lock().unwrap_or_else(PoisonError::into_inner).recv();
         std::thread::scope(|scope| {
             for _ in 0..self.jobs {
-                let (sender, next) = (sender.clone(), &next);
+                let sender = sender.clone();
                 scope.spawn(move || {
-                    while !self.stop.load(Ordering::Relaxed) {
-                        let Some(&number) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
-                        let row = self.run_one(&scenes[number], (number, &sender));
+                    while let Ok(number) = next() {
+                        let news = if self.stop.load(Ordering::Relaxed) {
+                            News::Left(number)
+                        } else {
+                            let made = scene_of(number).map(|scene| self.run_one(&scene, (number, &sender)));
+                            News::Ended(number, Box::new(made.unwrap_or_else(failed)))
+                        };
                         // Nobody listens only if the listener has failed, which is told elsewhere.
-                        let _ = sender.send(News::Ended(number, Box::new(row)));
+                        let _ = sender.send(news);
                     }
                 });
             }
             drop(sender);
-            listen(&receiver);
+            direct(begin, &receiver);
         });
     }
 

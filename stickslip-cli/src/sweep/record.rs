@@ -27,7 +27,7 @@ pub struct SweepRecord {
 }
 
 /// One run; a row of `sweep.csv`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
     /// Name of its folder.
     pub run: String,
