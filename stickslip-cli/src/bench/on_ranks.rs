@@ -10,6 +10,7 @@ use crate::failure::Failure;
 use crate::tell::tell;
 use miette::miette;
 use serde::Serialize;
+use stickslip::check::free_memory;
 use stickslip::door::RankShare;
 
 /// A problem on so many ranks.
@@ -121,8 +122,9 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// A problem that grows with the ranks, against as many that have nothing to do with each other side by side: cores
-/// share what memory gives, so one that is alone computes faster.
+/// A problem that grows with the ranks, against as many single ones side by side, each with all of it: cores share what
+/// memory gives, so one that is alone computes faster, and the larger a problem is, the more of its particles have
+/// neighbours to meet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WeakScaling {
     /// The problem, in a few words, as it is for one rank.
@@ -135,7 +137,7 @@ pub struct WeakScaling {
     pub seconds: Vec<f64>,
     /// Time in which a rank computed in a step, the mean over ranks [s].
     pub computed: f64,
-    /// Time in which a particle is computed in a step by ranks that are alone, side by side [s].
+    /// Time in which a particle of the same problem is computed in a step by single ranks, side by side [s].
     pub particle: f64,
     /// What a rank sends in a step, the mean over ranks [bytes].
     pub bytes: f64,
@@ -146,8 +148,8 @@ pub struct WeakScaling {
 }
 
 impl WeakScaling {
-    /// Measures a problem on 2, 4, 8 ranks and so on as far as there are cores, so often: `grown` is the problem with
-    /// so many times as many particles.
+    /// Measures a problem on 2, 4, 8 ranks and so on as far as there are cores, and memory for as many of it, so often:
+    /// `grown` is the problem with so many times as many particles.
     ///
     /// # Errors
     /// A measurement fails.
@@ -157,26 +159,35 @@ impl WeakScaling {
         (effort, turns): (Effort, usize),
     ) -> Result<Vec<Self>, Failure> {
         let counts = (1..).map(|power| 1 << power).take_while(|&ranks| ranks <= cores());
-        counts.map(|ranks| Self::of((case, &grown(ranks)), (effort, turns), ranks)).collect()
+        let cases = counts.map(|ranks| (grown(ranks), ranks));
+        let fit = cases.take_while(|(grown, ranks)| {
+            let scene = stickslip::scene::parse("bench", &grown.scene, &[]);
+            let report = scene.ok().and_then(|read| stickslip::check::report(&read.scene).ok());
+            let fits = report.is_none_or(|report| report.memory * *ranks as f64 <= free_memory());
+            if !fits {
+                tell!("P7 {}, grown to {ranks} ranks: left out for want of memory", case.label());
+            }
+            fits
+        });
+        fit.map(|(grown, ranks)| Self::of((case.label(), &grown), (effort, turns), ranks)).collect()
     }
 
     fn of(
-        (case, grown): (&BenchCase, &BenchCase),
+        (problem, grown): (String, &BenchCase),
         (effort, turns): (Effort, usize),
         ranks: usize,
     ) -> Result<Self, Failure> {
-        let problem = case.label();
         tell!("P7 {problem}, grown to {ranks} ranks ...");
-        let order = |case: &BenchCase, ranks: usize| Order {
-            scene: case.scene.clone(),
+        let order = |ranks: usize| Order {
+            scene: grown.scene.clone(),
             overrides: Vec::new(),
             threads: 1,
             task: BenchTask::Ranks(effort, ranks),
         };
         let (mut apart, mut shared, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..turns {
-            apart.extend(side_by_side(&order(case, 1), ranks)?);
-            let sample = order(grown, ranks).measure()?;
+            apart.extend(side_by_side(&order(1), ranks)?);
+            let sample = order(ranks).measure()?;
             seconds.extend(sample.repetitions.iter().map(|time| time / sample.steps as f64));
             shared.push(sample);
         }
@@ -200,12 +211,12 @@ impl WeakScaling {
             computed: mean(&computed),
             particle: median(&apart.iter().map(per_particle).collect::<Vec<_>>()),
             bytes: mean(&of_shares(&|share| share.traffic.bytes as f64)),
-            modelled: case.scheme.halo(particles, ranks),
+            modelled: grown.scheme.halo(particles, ranks),
             imbalance: median(&imbalances),
         })
     }
 
-    /// How much of what ranks that are alone do is done by these.
+    /// How much of what single ranks do is done by these.
     pub fn efficiency(&self) -> f64 {
         self.particle * self.particles as f64 / self.ranks as f64 / median(&self.seconds)
     }

@@ -241,7 +241,7 @@ impl BenchRecord {
         }
         let network = CLUSTER.name;
         format!(
-            "{strong}The same grown with the ranks, against as many ranks that are alone, side by side.\n{weak}\n\
+            "{strong}The same grown with the ranks, against as many single ranks, each with all of it.\n{weak}\n\
              By the model of a step, {network}: efficiency with 10^6\nparticles a rank, and the part of borders in a \
              step.\n{models}\n"
         )

@@ -80,7 +80,7 @@ impl StepModel {
     /// particles make a body; a body elsewhere takes `body` [s].
     ///
     /// What ranks compute beyond their particles and bodies elsewhere is put down to the bytes that they send, by least
-    /// squares. A particle takes what it does on all cores, where as many ranks compute side by side that are alone.
+    /// squares. A particle takes what it does for single ranks, side by side, that each have all of the problem.
     pub fn fit(grown: &[WeakScaling], scheme: BenchScheme, (bodies, body): (f64, f64)) -> Option<Self> {
         let last = grown.last()?;
         let borders = |grown: &WeakScaling| {
