@@ -49,7 +49,9 @@ pub fn run(bytes: &[u8]) {
         Err(error) => draw(error),
         Ok(loaded) => {
             let velocities = loaded.scene.bodies.iter().filter_map(|body| match &body.motion {
-                stickslip::scene::BodyMotion::Rigid { velocity, spin } => Some(velocity.iter().chain(spin)),
+                stickslip::scene::BodyMotion::Rigid { velocity, spin } => {
+                    Some(velocity.iter().chain(spin.iter()))
+                }
                 _ => None,
             });
             velocities.flatten().for_each(|expression: &Expression| {

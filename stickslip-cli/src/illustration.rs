@@ -116,7 +116,7 @@ impl<'a> Album<'a> {
         let start = snapshots(results)?.first().expect("there is at least one");
         needs_whole_snapshots(results)?;
         let setting = Setting::of(&results.scene().map_err(Failure::input)?);
-        let setting = setting.with_floors(&results.manifest().scene);
+        let setting = setting.with_floors(&results.manifest().scene.value());
         let mirror = mirror(&setting, &choice)?;
         let window = fits(results.manifest().dimension, &choice)?;
         let shown = shown(results, &choice);

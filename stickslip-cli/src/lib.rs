@@ -29,6 +29,10 @@ mod view;
 use clap::Parser;
 use std::ffi::OsString;
 use std::sync::OnceLock;
+use std::time::Duration;
+
+/// After so long the first of several processes has told what is wrong.
+const UNTIL_TOLD: Duration = Duration::from_secs(2);
 
 /// How another program is called that brings the command along.
 static CALLED: OnceLock<Vec<OsString>> = OnceLock::new();
@@ -57,20 +61,31 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     let ended = match (commands::Command::try_parse_from(words), together) {
         (Ok(command), None) => command.execute(),
         (Ok(command), Some(launched)) => launched.execute(command),
-        // The first one tells what is wrong. Launchers end all as soon as one ends with another code than 0: before it
-        // has told, if the others had its code.
-        (Err(_), Some(launched)) if !launched.is_first() => return 0,
         (Err(error), _) => {
-            // Nobody can be told of an output that takes nothing.
-            let _ = error.print();
+            if tells(together) {
+                // Nobody can be told of an output that takes nothing.
+                let _ = error.print();
+            }
             return u8::try_from(error.exit_code()).unwrap_or(1);
         }
     };
     match ended {
-        Err(failure) if together.is_none_or(ranks::Launched::is_first) => {
-            failure.print();
+        Ok(()) => 0,
+        Err(failure) => {
+            if tells(together) {
+                failure.print();
+            }
             failure.exit_code()
         }
-        _ => 0,
     }
+}
+
+/// Whether this process tells what is wrong: of several only the first. A launcher ends all as soon as one has ended
+/// with another code than 0, so the others wait until it has told.
+fn tells(together: Option<ranks::Launched>) -> bool {
+    let tells = together.is_none_or(ranks::Launched::is_first);
+    if !tells {
+        std::thread::sleep(UNTIL_TOLD);
+    }
+    tells
 }

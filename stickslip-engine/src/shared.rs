@@ -11,19 +11,20 @@ use crate::contact::ContactSums;
 use crate::door::{
     BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
     NotTakenUp, ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError,
-    SavedShare, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError,
-    WrittenValues,
+    SavedColumn, SavedShare, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState,
+    WriteError, WrittenValues,
 };
 use crate::lanes::Processor;
 use crate::particles::by_number;
 use crate::ranks::{Ranks, Threads, all_of, bytes_of, combined, read};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
-use crate::step::{self, ParticleLoop, Shareable};
+use crate::step::{self, Find, ParticleLoop, Shareable};
 use rayon::ThreadPoolBuilder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_bytes::ByteBuf;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -50,7 +51,7 @@ pub fn lead(
     path: ParticleLoop,
     (ranks, program): (Arc<dyn Ranks>, Program),
 ) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(Box::new(Leader(Part::new(scene, path, (ranks, program))?)))
+    Ok(Box::new(Leader(Part::new(Cow::Owned(scene.clone()), path, (ranks, program))?)))
 }
 
 /// Does what the first rank asks of the simulation of this scene, until it drops it.
@@ -62,7 +63,7 @@ pub fn follow(
     path: ParticleLoop,
     (ranks, program): (Arc<dyn Ranks>, Program),
 ) -> Result<(), Problem> {
-    let mut part = Part::new(scene, path, (ranks, program))?;
+    let mut part = Part::new(Cow::Borrowed(scene), path, (ranks, program))?;
     while part.obey() {}
     Ok(())
 }
@@ -90,8 +91,8 @@ pub fn among_threads<X: Send>(
 
 /// Particles that the first rank is shown at a time, of all ranks together.
 const SHOWN_AT_A_TIME: usize = 1 << 16;
-/// Particles of a body of which it sees the bytes of an entry at a time.
-const BYTES_OF_AT_A_TIME: usize = 1 << 17;
+/// Particles of a body of which it sees the bytes of an entry at a time, and of several bodies those of all entries.
+const BYTES_OF_AT_A_TIME: usize = if cfg!(test) { 300 } else { 1 << 17 };
 
 /// What the first rank asks of all, itself included.
 #[derive(Serialize, Deserialize)]
@@ -114,47 +115,45 @@ enum Call {
     Fastest(usize, [f64; 3]),
     Column(usize, String),
     VisitColumn(usize, String),
-    Trace(usize, Vec<u32>),
+    TraceEach(Vec<(usize, Vec<u32>)>),
     Grid,
     Shares,
     SaveRest,
-    VisitBytes(usize),
+    VisitBytes(Range<usize>),
     Ask(Vec<u8>),
-    /// A state follows.
-    Restore,
     /// A state without particles follows.
     RestoreOnRanks(Vec<u8>),
-    /// A state follows; whether it is that of a snapshot, and what becomes of velocities.
-    BeginFrom(bool, StartVelocities),
+    /// A state without particles follows, then particles, unless the first one could not take it up.
+    BeginAnew,
     End,
 }
 
 /// One rank's part of a simulation. All ranks make the same calls of it in the same order, and the first gets what they
 /// give together.
-struct Part {
+struct Part<'a> {
     own: Box<dyn Shareable>,
-    scene: Scene,
+    scene: Cow<'a, Scene>,
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
     program: Program,
 }
 
 /// The first rank's.
-struct Leader(Part);
+struct Leader(Part<'static>);
 
 /// [`bytes_of`] where fields may be left out: with their names.
 fn named_bytes_of(said: &impl Serialize) -> Vec<u8> {
     rmp_serde::to_vec_named(said).expect("memory takes what is written")
 }
 
-impl Part {
+impl<'a> Part<'a> {
     fn new(
-        scene: &Scene,
+        scene: Cow<'a, Scene>,
         path: ParticleLoop,
         (ranks, program): (Arc<dyn Ranks>, Program),
     ) -> Result<Self, Problem> {
-        let own = step::build_share(scene, path, ranks.clone())?;
-        Ok(Part { own, scene: scene.clone(), path, ranks, program })
+        let own = step::build_share(&scene, path, ranks.clone())?;
+        Ok(Part { own, scene, path, ranks, program })
     }
 
     /// What each rank says, by rank, for the first.
@@ -184,24 +183,17 @@ impl Part {
             Call::Fastest(body, against) => drop(self.fastest(body, against)),
             Call::Column(body, name) => drop(self.column(body, &name)),
             Call::VisitColumn(body, name) => drop(self.visit_column(body, &name, &mut |_, _| ())),
-            Call::Trace(body, numbers) => drop(self.trace(body, &numbers)),
+            Call::TraceEach(wanted) => drop(self.trace_each(&wanted)),
             Call::Grid => drop(self.grid_snapshot()),
             Call::Shares => drop(self.shares()),
             Call::SaveRest => drop(self.save_rest()),
-            Call::VisitBytes(body) => drop(self.visit_bytes(body, &mut |_| ())),
+            Call::VisitBytes(bodies) => drop(self.visit_bytes(bodies, &mut |_, _| ())),
             Call::Ask(asked) => drop(self.ask(&asked)),
-            Call::Restore => {
-                let state = read(&self.ranks.hear_first(&[]));
-                drop(self.begin_anew(|whole| whole.restore(state)));
-            }
             Call::RestoreOnRanks(asked) => {
                 let rest = read(&self.ranks.hear_first(&[]));
                 drop(self.restore_on_ranks(&rest, &asked));
             }
-            Call::BeginFrom(of_snapshot, velocities) => {
-                let state = SavedState { of_snapshot, ..read(&self.ranks.hear_first(&[])) };
-                drop(self.begin_anew(|whole| whole.begin_from(&state, velocities)));
-            }
+            Call::BeginAnew => drop(self.begin_anew(None)),
             Call::End => return false,
         }
         true
@@ -286,9 +278,12 @@ impl Part {
         Ok((column.description, numbers, values))
     }
 
-    fn trace(&self, body: usize, numbers: &[u32]) -> Vec<TracedParticle> {
-        let mut all = self.gathered(&self.own.trace(body, numbers)).concat();
-        all.sort_unstable_by_key(|particle| particle.number);
+    fn trace_each(&self, wanted: &[(usize, Vec<u32>)]) -> Vec<Vec<TracedParticle>> {
+        let mut all = vec![Vec::new(); wanted.len()];
+        for own in self.gathered(&self.own.trace_each(wanted)) {
+            all.iter_mut().zip(own).for_each(|(all, own)| all.extend(own));
+        }
+        all.iter_mut().for_each(|all| all.sort_unstable_by_key(|particle| particle.number));
         all
     }
 
@@ -307,8 +302,58 @@ impl Part {
         Some(SavedState { contact_sums, ..own })
     }
 
-    /// As [`Simulation::visit_bytes`], of particles with some numbers at a time.
-    fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
+    /// As [`Simulation::visit_bytes`]: of several small bodies at a time, and of a large one by itself.
+    fn visit_bytes(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
+        let counts = self.own.counts_of_all();
+        let (mut first, mut has_state) = (bodies.start, true);
+        while first < bodies.end {
+            let mut sum = 0;
+            let fit = (first..bodies.end).take_while(|&body| {
+                sum += counts[body];
+                sum <= BYTES_OF_AT_A_TIME
+            });
+            let several = first..first + fit.count();
+            has_state &= match several.is_empty() {
+                true => self.visit_bytes_of_one(first, &mut |bytes| look(first, bytes)),
+                false => self.visit_bytes_of_several(several.clone(), look),
+            };
+            first = several.end.max(first + 1);
+        }
+        has_state
+    }
+
+    /// The same of bodies that find room in one place.
+    fn visit_bytes_of_several(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
+        let mut has_state = true;
+        let own = bodies.clone().map(|body| {
+            let mut share = SavedShare { body, numbers: Vec::new(), columns: Vec::new() };
+            has_state &= self.own.save_columns(body, &mut |numbers, column| {
+                if share.columns.is_empty() {
+                    share.numbers = numbers.to_vec();
+                }
+                share.columns.push(column);
+            });
+            share
+        });
+        let all: Vec<Vec<SavedShare>> = self.gathered(&own.collect());
+        let mut all: Vec<_> = all.into_iter().map(Vec::into_iter).collect();
+        // Only the first rank is told.
+        let told = if all.is_empty() { 0..0 } else { bodies };
+        for body in told {
+            let shares: Vec<SavedShare> = all.iter_mut().filter_map(Iterator::next).collect();
+            let names: Vec<SavedColumn> = shares[0].columns.iter().map(SavedColumn::emptied).collect();
+            let (numbers, columns) = SavedShare::joined(shares).expect("all ranks have the same columns");
+            let order = by_number(&numbers);
+            for column in if numbers.is_empty() { names } else { columns } {
+                look(body, column.name.as_bytes());
+                column.sorted_lines(&order).for_each(|line| look(body, &line));
+            }
+        }
+        has_state
+    }
+
+    /// The same of one body, of particles with some numbers at a time.
+    fn visit_bytes_of_one(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
         let mut order: Option<(Vec<u32>, Vec<u32>, u32)> = None;
         self.own.save_columns(body, &mut |numbers, column| {
             let (order, sorted, end) = order.get_or_insert_with(|| {
@@ -347,32 +392,80 @@ impl Part {
     }
 
     fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Result<(), NotTakenUp> {
-        let empty = step::build_empty(&self.scene, self.path, &*self.ranks);
-        // What it began with goes first.
-        self.own = empty.map_err(|problem| RestoreError::new(problem.to_string()))?;
-        let (ranks, find) = (&*self.ranks, self.program.find);
-        let mut find = |show: &mut dyn FnMut(Vec<SavedShare>)| find(ranks, asked, show);
-        self.own.take_up_share((&self.scene, self.ranks.clone()), rest, &mut find)
+        let (ranks, find) = (self.ranks.clone(), self.program.find);
+        self.take_up(rest, &mut |show| find(&*ranks, asked, show))
     }
 
-    /// Begins with another state, which the whole simulation takes up before it is shared.
-    fn begin_anew(
-        &mut self,
-        begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
-    ) -> Result<(), RestoreError> {
-        self.own = step::build_among_from(&self.scene, self.path, self.ranks.clone(), begin)?;
-        Ok(())
+    /// Takes up a state, of which `find` gives this rank some particles. What it has now goes before they come.
+    fn take_up(&mut self, rest: &SavedState, find: Find) -> Result<(), NotTakenUp> {
+        let empty = step::build_empty(&self.scene, self.path, &*self.ranks);
+        self.own = empty.map_err(|problem| RestoreError::new(problem.to_string()))?;
+        self.own.take_up_share((&self.scene, self.ranks.clone()), rest, find)
     }
+
+    /// Begins with a state that is taken up as a whole before it is shared: by the first rank, which has `begin`.
+    fn begin_anew(&mut self, begin: Option<Begin>) -> Result<(), RestoreError> {
+        let whole = begin.map(|begin| {
+            let whole = step::build_on(&self.scene, self.path);
+            let mut whole = whole.map_err(|problem| RestoreError::new(problem.to_string()))?;
+            begin(&mut *whole)?;
+            Ok(whole)
+        });
+        let rest = whole.as_ref().map(|whole: &Result<Box<dyn Simulation>, RestoreError>| {
+            whole.as_ref().map(|whole| whole.save_rest().expect("it is whole")).map_err(RestoreError::clone)
+        });
+        let said = rest.map_or_else(Vec::new, |rest| named_bytes_of(&rest));
+        let rest = read::<Result<SavedState, RestoreError>>(&self.ranks.hear_first(&said))?;
+        let (ranks, mut whole) = (self.ranks.clone(), whole.and_then(Result::ok));
+        let taken = self.take_up(&rest, &mut |show| {
+            deal(&*ranks, whole.take(), show);
+            Ok(())
+        });
+        taken.map_err(|problem| match problem {
+            NotTakenUp::Unfound(problem) => RestoreError::new(problem),
+            NotTakenUp::Other(problem) => problem,
+        })
+    }
+}
+
+/// Takes up a state as a whole.
+type Begin<'a> = Box<dyn FnOnce(&mut dyn Simulation) -> Result<(), RestoreError> + 'a>;
+
+/// Deals out the particles of a whole that the first rank has, some to each at a time, whoever will own them.
+fn deal(ranks: &dyn Ranks, whole: Option<Box<dyn Simulation>>, show: &mut dyn FnMut(Vec<SavedShare>)) {
+    let Some(whole) = whole else {
+        while read(&ranks.hear_first(&[])) {
+            ranks.exchange(Vec::new()).iter().for_each(|(_, shares)| show(read(shares)));
+        }
+        return;
+    };
+    let mut dealt = Vec::new();
+    let mut deal = |dealt: &mut Vec<Vec<SavedShare>>| {
+        ranks.hear_first(&bytes_of(&true));
+        let others = dealt.drain(1..).zip(1..).map(|(shares, rank)| (rank, bytes_of(&shares)));
+        ranks.exchange(others.collect());
+        show(dealt.swap_remove(0));
+    };
+    whole.save_shares((SHOWN_AT_A_TIME / ranks.count()).max(256), &mut |shares| {
+        dealt.push(shares);
+        if dealt.len() == ranks.count() {
+            deal(&mut dealt);
+        }
+    });
+    if !dealt.is_empty() {
+        deal(&mut dealt);
+    }
+    ranks.hear_first(&bytes_of(&false));
 }
 
 impl Leader {
     /// Tells the others what all are to do.
-    fn tell(&self, call: &Call) -> &Part {
+    fn tell(&self, call: &Call) -> &Part<'static> {
         self.0.ranks.hear_first(&bytes_of(call));
         &self.0
     }
 
-    fn tell_mut(&mut self, call: &Call) -> &mut Part {
+    fn tell_mut(&mut self, call: &Call) -> &mut Part<'static> {
         self.tell(call);
         &mut self.0
     }
@@ -485,7 +578,11 @@ impl View for Leader {
     }
 
     fn trace(&self, body: usize, numbers: &[u32]) -> Vec<TracedParticle> {
-        self.tell(&Call::Trace(body, numbers.to_vec())).trace(body, numbers)
+        self.trace_each(&[(body, numbers.to_vec())]).swap_remove(0)
+    }
+
+    fn trace_each(&self, wanted: &[(usize, Vec<u32>)]) -> Vec<Vec<TracedParticle>> {
+        self.tell(&Call::TraceEach(wanted.to_vec())).trace_each(wanted)
     }
 
     fn grid_snapshot(&self) -> GridSnapshot {
@@ -535,25 +632,76 @@ impl Simulation for Leader {
         self.tell(&Call::SaveRest).save_rest()
     }
 
-    fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
-        self.tell(&Call::VisitBytes(body)).visit_bytes(body, look)
+    fn visit_bytes(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
+        self.tell(&Call::VisitBytes(bodies.clone())).visit_bytes(bodies, look)
     }
 
     fn begin_from(&mut self, state: &SavedState, velocities: StartVelocities) -> Result<(), RestoreError> {
-        let part = self.tell_mut(&Call::BeginFrom(state.of_snapshot, velocities));
-        part.ranks.hear_first(&named_bytes_of(state));
-        part.begin_anew(|whole| whole.begin_from(state, velocities))
+        let begin: Begin = Box::new(|whole| whole.begin_from(state, velocities));
+        self.tell_mut(&Call::BeginAnew).begin_anew(Some(begin))
     }
 
     fn restore(&mut self, state: SavedState) -> Result<(), RestoreError> {
-        let part = self.tell_mut(&Call::Restore);
-        part.ranks.hear_first(&named_bytes_of(&state));
-        part.begin_anew(|whole| whole.restore(state))
+        let begin: Begin = Box::new(|whole| whole.restore(state));
+        self.tell_mut(&Call::BeginAnew).begin_anew(Some(begin))
     }
 
     fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Option<Result<(), NotTakenUp>> {
         let part = self.tell_mut(&Call::RestoreOnRanks(asked.to_vec()));
         part.ranks.hear_first(&named_bytes_of(rest));
         Some(part.restore_on_ranks(rest, asked))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+    use std::collections::BTreeMap;
+
+    /// Two bodies that find room together, a large one, and one without particles.
+    const SCENE: &str = r#"
+[space]
+dimension = "plane-strain"
+cell = 0.1
+[time]
+end = 1
+[materials.rubber]
+density = 1000
+neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 }
+[[bodies]]
+name = "ball {i}"
+repeat = { i = 2 }
+material = "rubber"
+shape.ball = { center = ["i", 0.5], radius = 0.3 }
+[[bodies]]
+name = "block"
+material = "rubber"
+shape.box = { min = [0, 1], max = [2, 2] }
+[[bodies]]
+name = "floor"
+material = "rubber"
+shape.half_space = { point = [0, -9], normal = [0, 1] }
+rigid = {}
+"#;
+
+    const PROGRAM: Program = Program { act: |_, _, _| Vec::new(), find: |_, _, _| Ok(()) };
+
+    #[test]
+    fn ranks_show_the_bytes_that_one_has() {
+        let scene = parse("scene.toml", SCENE, &[]).unwrap().scene;
+        let shown = |simulation: &dyn Simulation| {
+            let mut all: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+            let mut look = |body, bytes: &[u8]| all.entry(body).or_default().extend(bytes);
+            assert!(simulation.visit_bytes(0..scene.bodies.len(), &mut look));
+            all
+        };
+        let one = step::build(&scene).unwrap();
+        assert!(one.particles() > 3 * BYTES_OF_AT_A_TIME);
+        let one = shown(&*one);
+        for count in [2, 3] {
+            let several = among_threads(&scene, (count, PROGRAM), |first| shown(&*first.unwrap()));
+            assert!(one == several, "{count} ranks");
+        }
     }
 }

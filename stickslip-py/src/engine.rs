@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use stickslip::column::{ColumnDescription, Kind};
 use stickslip::door::{ContactCursor, ContactMean, ContactState, Simulation, View};
-use stickslip::observe::{Checkpoint, CheckpointForm, Manifest, Memory};
+use stickslip::observe::{Checkpoint, CheckpointForm, Manifest, Memory, SceneRecord};
 use stickslip::run::{CarriedBodies, begin, same_physics};
 use stickslip::scene::{Loaded, Scene};
 
@@ -212,7 +212,7 @@ impl Engine {
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let written = py.detach(|| {
             let state = self.handle().save().expect("an engine has a state");
-            Checkpoint::new(&Manifest::record(&self.scene), state, Memory::keeping(&path))
+            Checkpoint::new(&SceneRecord::new(&self.scene), state, Memory::keeping(&path))
                 .write(&path, CheckpointForm::Plain)
         });
         written.map_err(|error| errors::of_file(py, "RunError", &error))

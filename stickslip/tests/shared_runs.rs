@@ -534,7 +534,7 @@ fn ranks_refuse_what_one_refuses() {
         damage(&mut state);
         let path = folder.path().join("0000000001.checkpoint");
         let memory = stickslip::observe::Memory::keeping(&path);
-        let checkpoint = Checkpoint::new(&stickslip::observe::Manifest::record(&scene), state, memory);
+        let checkpoint = Checkpoint::new(&stickslip::observe::SceneRecord::new(&scene), state, memory);
         checkpoint.write(&path, stickslip::observe::CheckpointForm::Plain).unwrap();
         let take_up = |simulation: &mut dyn Simulation| {
             let restored = Checkpoint::open(&path).unwrap().restore(&path, simulation);

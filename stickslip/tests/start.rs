@@ -140,6 +140,29 @@ fn what_begins_from_a_run_goes_on_as_the_run_does() {
     }
 }
 
+/// A grid elsewhere fills bodies in places that differ by round-off: the run goes on with those of its own scene.
+#[test]
+fn a_run_that_began_on_another_grid_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, whole, stopped] = ["packing", "whole", "stopped"].map(|name| folder.path().join(name));
+    let on = |corner: &str| {
+        let domain = format!("cell = 0.1\ndomain.min = {corner}\ndomain.max = [3, 3]\n");
+        without(&without(&PACKING.replace("cell = 0.1\n", &domain), "gate"), "floor")
+    };
+    make(&scene(&on("[-1.03, -1.07]").replace("end = 0.3", "end = 0.05")), &packing).unwrap();
+    let elsewhere = on("[-1.33, -1.97]");
+    let of_end = |end: &str| from(&elsewhere.replace("end = 0.3", &format!("end = {end}")), &packing, "");
+    make(&of_end("0.08"), &whole).unwrap();
+    make(&of_end("0.04"), &stopped).unwrap();
+    let scene = of_end("0.08");
+    let mut simulation = stickslip::step::build(&scene).unwrap();
+    resume(&scene, &mut *simulation, &options(&stopped), &mut |_| {}).unwrap();
+    let [whole, stopped] = [whole, stopped].map(|out| last(&out).position);
+    // Its steps end at its first end, too.
+    let off = whole.as_flattened().iter().zip(stopped.as_flattened()).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-3);
+}
+
 #[test]
 fn bodies_may_begin_at_rest_and_with_another_density() {
     let folder = tempfile::tempdir().unwrap();

@@ -228,7 +228,8 @@ impl Repeated {
         let mut loaded = read.map_err(Failure::input)?;
         loaded.scene.time.end = self.manifest.performance.time;
         let now = Manifest::record(&loaded.scene);
-        stickslip::run::same_physics(&self.results, &self.manifest.scene, &now).map_err(Failure::input)?;
+        stickslip::run::same_physics(&self.results, &self.manifest.scene.value(), &now)
+            .map_err(Failure::input)?;
         Ok(loaded)
     }
 

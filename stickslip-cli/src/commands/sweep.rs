@@ -111,9 +111,14 @@ impl Arguments {
         let wanted = if self.gather { Vec::new() } else { left(&table) };
         let folder_of_all = std::path::absolute(&folder).into_diagnostic().map_err(Failure::Run)?;
         let limits = [self.jobs, self.threads].map(|limit| limit.map(usize::from));
-        let family = Family { plan, folder: folder_of_all, scene, runs: wanted.len(), limits };
+        if ranks::count() > 1 && folder_of_all.to_str().is_none() {
+            let found = folder.display();
+            return Err(Failure::Input(miette!("--out: found {found}; allowed: a name in UTF-8")));
+        }
+        let text = members[0].1.source.text().to_owned();
+        let family = Family { plan, folder: folder_of_all, scene: (scene, text), runs: wanted.len(), limits };
         let share = wanted.len().div_ceil(ranks::count());
-        let places = (folder, family.scene.clone());
+        let places = (folder, family.scene.0.clone());
         let crew = Crew::new(limits, (ranks::neighbours(), share), places, stop_on_interrupt()?);
         self.run(&crew, (&family, &members), &wanted, &mut table)?;
         if self.only.is_empty() {

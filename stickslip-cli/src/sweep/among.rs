@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
 use std::thread::sleep;
 use std::time::Duration;
+use stickslip::observe::SceneSource;
 use stickslip::ranks::{Ranks, all_of, bytes_of, read};
 use stickslip::scene::Loaded;
 
@@ -22,8 +23,8 @@ pub struct Family {
     pub plan: Plan,
     /// Folder of the sweep, absolute.
     pub folder: PathBuf,
-    /// The scene file, absolute.
-    pub scene: PathBuf,
+    /// The scene file, absolute, and its text as the first process has read it.
+    pub scene: (PathBuf, String),
     /// How many runs are to be made.
     pub runs: usize,
     /// Runs at a time and threads of each process, where the user gives them.
@@ -111,12 +112,14 @@ pub fn follow(ranks: &dyn Ranks, family: &Family, neighbours: usize) {
     let family_members = members(&family.plan.variations);
     let share = family.runs.div_ceil(ranks.count());
     let stop = Arc::new(AtomicBool::new(false));
-    let (folder, scene) = (family.folder.clone(), family.scene.clone());
-    let crew = Crew::new(family.limits, (neighbours, share), (folder, scene), stop);
+    let (path, text) = &family.scene;
+    let crew = Crew::new(family.limits, (neighbours, share), (family.folder.clone(), path.clone()), stop);
     ranks.tell_first(&bytes_of(&crew.jobs));
     let scene_of = |number: usize| {
         let member: &Member = &family_members[number];
-        let loaded = stickslip::scene::load(&family.scene, &member.settings);
+        let (path, set) = (path.clone(), member.settings.clone());
+        let source = SceneSource { path, set, until: None, text: Some(text.clone()) };
+        let loaded = source.recorded().expect("it has its text");
         loaded.map(|loaded| Arc::new((member.clone(), loaded))).map_err(|error| error.to_string())
     };
     crew.work(&scene_of, |begin, news| {

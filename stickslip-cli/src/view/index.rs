@@ -68,7 +68,8 @@ fn colors(gradient: colorous::Gradient, reversed: bool) -> Vec<String> {
 
 /// What the scene kept from its snapshots, in words; empty if nothing.
 fn left_out(results: &Results) -> String {
-    let asked = |key: &str| results.manifest().scene.pointer(&format!("/outputs/snapshots/{key}")).cloned();
+    let scene = results.manifest().scene.value();
+    let asked = |key: &str| scene.pointer(&format!("/outputs/snapshots/{key}"));
     let mut words = Vec::new();
     if let Some(every) = asked("every").and_then(|every| every.as_u64()).filter(|every| *every > 1) {
         words.push(format!("every {every}th particle"));

@@ -163,6 +163,6 @@ pub fn scene(results: &Results) -> Result<Scene, String> {
     let read = source.recorded().unwrap_or_else(|| source.load());
     let loaded = read.map_err(|error| format!("the scene cannot be read again: {error}"))?;
     let now = Manifest::record(&loaded.scene);
-    same_physics(&source.path, &manifest.scene, &now).map_err(|error| error.to_string())?;
+    same_physics(&source.path, &manifest.scene.value(), &now).map_err(|error| error.to_string())?;
     Ok(loaded.scene)
 }

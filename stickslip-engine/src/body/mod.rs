@@ -10,6 +10,7 @@ use crate::particles::Particles;
 use crate::rigid::RigidMotion;
 use crate::scene::VolumeChange;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
+use std::sync::Arc;
 
 /// A material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,8 +69,8 @@ impl<N: Number> Gyration<N> {
 pub struct Body<T, const D: usize> {
     /// Name in the scene.
     pub name: String,
-    /// Constitutive law.
-    pub material: Material<T>,
+    /// Constitutive law, one for all bodies of a material.
+    pub material: Arc<Material<T>>,
     /// Mass per undeformed volume [kg/m^3].
     pub density: T,
     /// Expansion by temperature [1/K].
@@ -77,7 +78,7 @@ pub struct Body<T, const D: usize> {
     /// Its particles, in the order of memory.
     pub particles: Particles<T, D>,
     /// Its motion and pose if it is rigid: prescribed, whatever pushes it.
-    pub motion: Option<RigidMotion>,
+    pub motion: Option<Box<RigidMotion>>,
     /// Its undeformed shape with its images in the domain's mirrors.
     pub whole: MirroredShape,
     /// Which thickness its particles take.

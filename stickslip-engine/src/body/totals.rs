@@ -385,7 +385,7 @@ impl<T: Laned, const D: usize> Body<T, D> {
     /// The same before it is rounded.
     pub fn total_sums(&self) -> TotalSums {
         let sum = |part| {
-            let material = (!self.is_rigid()).then_some(&self.material);
+            let material = (!self.is_rigid()).then_some(&*self.material);
             let density = self.density.f64();
             let (columns, gyration, expansion) = (self.particles.view(), self.gyration(), self.expansion);
             T::run(Processor::best(), SumOfRange { columns, part, gyration, material, density, expansion })

@@ -22,6 +22,7 @@ use crate::scene::StartVelocities;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// A simulation as it is now: observers, checks and pictures look at this. Asking changes nothing.
 pub trait View {
@@ -147,6 +148,10 @@ pub trait View {
     fn trace(&self, _body: usize, _numbers: &[u32]) -> Vec<TracedParticle> {
         Vec::new()
     }
+    /// The same of several bodies, each with its numbers.
+    fn trace_each(&self, wanted: &[(usize, Vec<u32>)]) -> Vec<Vec<TracedParticle>> {
+        wanted.iter().map(|(body, numbers)| self.trace(*body, numbers)).collect()
+    }
     /// The nodes of the last step's grid that carry mass.
     fn grid_snapshot(&self) -> GridSnapshot;
     /// Wall time spent so far in each verb of the step [s].
@@ -209,15 +214,17 @@ pub trait Simulation: View + Send {
     fn save_columns(&self, _body: usize, _take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
         false
     }
-    /// The bytes of what the particles of a body have: of each column its name, and each of its entries for one
-    /// particle after the other, ordered by number. Where ranks share them, only some are in one place at a time. False
-    /// of a simulation that has no state as data.
-    fn visit_bytes(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
-        let mut order: Option<Vec<u32>> = None;
-        self.save_columns(body, &mut |numbers, column| {
-            let order = order.get_or_insert_with(|| by_number(numbers));
-            look(column.name.as_bytes());
-            column.sorted_lines(order).for_each(|line| look(&line));
+    /// The bytes of what the particles of bodies have, one body after the other: of each column its name, and each of
+    /// its entries for one particle after the other, ordered by number. Where ranks share them, only some are in one
+    /// place at a time. False of a simulation that has no state as data.
+    fn visit_bytes(&self, mut bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
+        bodies.all(|body| {
+            let mut order: Option<Vec<u32>> = None;
+            self.save_columns(body, &mut |numbers, column| {
+                let order = order.get_or_insert_with(|| by_number(numbers));
+                look(body, column.name.as_bytes());
+                column.sorted_lines(order).for_each(|line| look(body, &line));
+            })
         })
     }
     /// Lets bodies begin as those of the same name were in the state of another run, before the first step. The others

@@ -178,7 +178,7 @@ impl SavedColumn {
     }
 
     /// The same column of no particles.
-    fn emptied(&self) -> SavedColumn {
+    pub(crate) fn emptied(&self) -> SavedColumn {
         SavedColumn { name: self.name.clone(), width: self.width, bytes: Vec::new() }
     }
 
@@ -280,13 +280,25 @@ impl SavedBody {
     }
 
     /// Gives it the particles in these shares; false if they do not have the same columns.
-    pub fn fill(&mut self, mut shares: Vec<SavedShare>) -> bool {
+    pub fn fill(&mut self, shares: Vec<SavedShare>) -> bool {
+        let Some((numbers, columns)) = SavedShare::joined(shares) else { return false };
+        self.numbers = numbers;
+        if !self.numbers.is_empty() {
+            self.columns = columns;
+        }
+        true
+    }
+}
+
+impl SavedShare {
+    /// The numbers and columns of all particles in shares of a body, none of shares without any; `None` if they do not
+    /// have the same columns.
+    pub(crate) fn joined(mut shares: Vec<SavedShare>) -> Option<(Vec<u32>, Vec<SavedColumn>)> {
         shares.retain(|share| !share.numbers.is_empty());
-        self.numbers = shares.iter().flat_map(|share| &share.numbers).copied().collect();
-        let Some(first) = shares.first() else { return true };
-        let count = first.columns.len();
+        let numbers: Vec<u32> = shares.iter().flat_map(|share| &share.numbers).copied().collect();
+        let count = shares.first().map_or(0, |first| first.columns.len());
         if shares.iter().any(|share| share.columns.len() != count) {
-            return false;
+            return None;
         }
         let of_column = |column: usize| {
             let part = |share: &mut SavedShare| {
@@ -297,9 +309,7 @@ impl SavedBody {
             SavedColumn::joined(shares.iter_mut().map(part).collect())
         };
         let columns: Option<Vec<SavedColumn>> = (0..count).map(of_column).collect();
-        let fits = columns.is_some();
-        self.columns = columns.unwrap_or_default();
-        fits
+        Some((numbers, columns?))
     }
 }
 

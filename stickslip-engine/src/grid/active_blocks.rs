@@ -5,10 +5,9 @@
 //! since no basis reaches more than four nodes.
 
 use super::border::{Border, ForeignTile, Mirrors, Traffic};
-use super::cell_list::{CellList, GuestList, block_of, corner_block, key, reached_blocks};
+use super::cell_list::{CellList, CellLists, GuestList, block_of, corner_block, key, reached_blocks};
 use super::{Nodes, Periods, cells_at, cells_reaching, locate, nodes_per_block};
 use crate::ranks::{Message, message_to};
-use crate::threads::each_of;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -40,7 +39,7 @@ pub struct SharedBlock<const D: usize> {
 /// The blocks under all bodies.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveBlocks<const D: usize> {
-    cell_lists: Vec<CellList>,
+    cell_lists: CellLists,
     /// Bodies that have particles or blocks here, in their order: of several ranks, none looks at any others in a step.
     here: Vec<u32>,
     /// Bodies of which particles have come that may not be listed there yet.
@@ -134,17 +133,21 @@ impl<const D: usize> ActiveBlocks<D> {
         }
     }
 
-    /// Begins with lists of so many bodies, all of which may be here, if there are none yet.
-    fn begin(&mut self, bodies: usize, reach: i32) {
+    /// Begins with lists of so many bodies, of which those with particles are here, if there are none yet.
+    fn begin(&mut self, bodies: usize, count: impl Fn(usize) -> usize, reach: i32) {
         if self.cell_lists.len() != bodies {
-            self.cell_lists.resize_with(bodies, || CellList::of_none(reach));
-            self.here = (0..bodies as u32).collect();
+            self.cell_lists = CellLists::of_none(bodies, reach);
+            self.here = (0..bodies as u32).filter(|&body| count(body as usize) > 0).collect();
+            if self.here.is_empty() {
+                // Somebody has to say that there are no blocks.
+                self.here = (0..bodies as u32).collect();
+            }
         }
     }
 
     /// Does something to the list of each body that is here, on threads.
     fn each_here(&mut self, work: impl Fn(usize, &mut CellList) + Sync) {
-        each_of(&mut self.cell_lists, &self.here, BODIES, work);
+        self.cell_lists.each_of(&self.here, BODIES, work);
     }
 
     /// Whether what is at a block is booked by this rank; by one that is alone, always.
@@ -214,7 +217,7 @@ impl<const D: usize> ActiveBlocks<D> {
         left: Option<&[u64]>,
         (base, number): (impl Fn(usize, usize) -> [i32; D] + Sync, impl Fn(usize, usize) -> u32 + Sync),
     ) -> Blocks {
-        self.begin(bodies, reach);
+        self.begin(bodies, &count, reach);
         let changed = AtomicBool::new(false);
         self.each_here(|body, cell_list| {
             let looks = (|particle| base(body, particle), |particle| number(body, particle));
@@ -246,7 +249,7 @@ impl<const D: usize> ActiveBlocks<D> {
         (base, number): (impl Fn(usize, usize) -> [i32; D] + Sync, impl Fn(usize, usize) -> u32 + Sync),
         lost: impl Fn([i32; D]) -> bool + Sync,
     ) {
-        self.begin(bodies, reach);
+        self.begin(bodies, &count, reach);
         let periods = self.periods;
         self.each_here(|body, cell_list| {
             let looks = (|particle| base(body, particle), |particle| number(body, particle));
@@ -358,12 +361,12 @@ impl<const D: usize> ActiveBlocks<D> {
     fn rebuild(&mut self) {
         let (lists, images) = (&mut self.cell_lists, &mut self.images);
         self.here.retain(|&body| {
-            let list = &mut lists[body as usize];
-            if list.is_empty() {
-                list.clear();
+            let is_here = !lists[body as usize].is_empty();
+            if !is_here {
+                lists.clear(body as usize);
                 images.get_mut(body as usize).into_iter().for_each(Vec::clear);
             }
-            !list.is_empty()
+            is_here
         });
         if self.periods.any() {
             self.find_images();
@@ -409,7 +412,7 @@ impl<const D: usize> ActiveBlocks<D> {
             let place = list.blocks.binary_search(&block).ok()?;
             Some((list.slots.start + place) as u32)
         };
-        let own = (&self.tiles[..], &self.cell_lists[..]);
+        let own = (&self.tiles[..], &self.cell_lists);
         border.share(own, (slot, &self.color_of), (self.periods, &self.mirrors));
         self.border = Some(border);
     }

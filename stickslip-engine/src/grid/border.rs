@@ -8,7 +8,7 @@
 //! tiles reach, and the others nobody asks for: if a tile has its home there, the tile's rank has the whole block.
 //! Blocks that are nobody's home are whole wherever they are held, and so are those near mirrors.
 
-use super::cell_list::{CellList, CornerBlocks, block_of, corner_block, key, reached_blocks};
+use super::cell_list::{CellLists, CornerBlocks, block_of, corner_block, key, reached_blocks};
 use super::{Periods, SIDE, Tile, count_at, nodes_at};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -208,7 +208,7 @@ impl Border {
     pub(super) fn find<const D: usize>(
         &mut self,
         (named, rank): (&[ForeignTile], usize),
-        lists: &[CellList],
+        lists: &CellLists,
         (periods, mirrors): (Periods<D>, &Mirrors),
     ) {
         let wrapped = |block: [i32; D]| key(periods.wrapped(block));
@@ -268,7 +268,7 @@ impl Border {
     /// `color` of each tile.
     pub(super) fn share<const D: usize>(
         &mut self,
-        (tiles, lists): (&[Tile<D>], &[CellList]),
+        (tiles, lists): (&[Tile<D>], &CellLists),
         (slot, color): (impl Fn(usize, u64) -> Option<u32>, &[usize]),
         (periods, mirrors): (Periods<D>, &Mirrors),
     ) {

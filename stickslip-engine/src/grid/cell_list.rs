@@ -1,9 +1,10 @@
 //! The blocks of one body: its particles by tile and cell, kept up to date as they move.
 
 use super::{Blocks, Disjoint, MOST_NODES, SIDE, locate, node_at, nodes_per_block};
-use crate::threads::each;
+use crate::threads::{each, each_of};
 use rayon::prelude::ParallelSliceMut;
-use std::ops::Range;
+use std::ops::{Index, IndexMut, Range};
+use std::sync::LazyLock;
 
 /// Blocks further than this from the origin have no key.
 const REACH: i32 = 1 << 20;
@@ -145,15 +146,61 @@ impl Mover {
 /// Stands in the order for a particle that has left.
 const GONE: u32 = u32::MAX;
 
-impl CellList {
-    /// One of a body without particles, which reach so many nodes beyond their base nodes.
-    pub fn of_none(reach: i32) -> Self {
-        CellList { reach, ..CellList::default() }
+/// The blocks of all bodies, by body. Those of a body that has nothing here take no memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CellLists {
+    lists: Vec<Option<Box<CellList>>>,
+    /// See [`CellList`].
+    reach: i32,
+}
+
+impl CellLists {
+    /// Of so many bodies, none of which has anything here, and whose particles reach so many nodes beyond their base
+    /// nodes.
+    pub fn of_none(bodies: usize, reach: i32) -> Self {
+        CellLists { lists: vec![None; bodies], reach }
     }
 
-    /// Forgets everything, and the room that it took.
-    pub fn clear(&mut self) {
-        *self = Self::of_none(self.reach);
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.lists.len()
+    }
+
+    /// Forgets what a body has here, and the room that it took.
+    pub fn clear(&mut self, body: usize) {
+        self.lists[body] = None;
+    }
+
+    /// Does something to the lists of some bodies, which ascend, so many at a time by a thread.
+    pub fn each_of(&mut self, bodies: &[u32], size: usize, work: impl Fn(usize, &mut CellList) + Sync) {
+        let reach = self.reach;
+        each_of(&mut self.lists, bodies, size, |body, list| work(body, made(list, reach)));
+    }
+}
+
+fn made(list: &mut Option<Box<CellList>>, reach: i32) -> &mut CellList {
+    list.get_or_insert_with(|| Box::new(CellList::of_none(reach)))
+}
+
+impl Index<usize> for CellLists {
+    type Output = CellList;
+
+    fn index(&self, body: usize) -> &CellList {
+        static NOTHING: LazyLock<CellList> = LazyLock::new(CellList::default);
+        self.lists[body].as_deref().unwrap_or_else(|| &NOTHING)
+    }
+}
+
+impl IndexMut<usize> for CellLists {
+    fn index_mut(&mut self, body: usize) -> &mut CellList {
+        made(&mut self.lists[body], self.reach)
+    }
+}
+
+impl CellList {
+    /// One of a body without particles, which reach so many nodes beyond their base nodes.
+    fn of_none(reach: i32) -> Self {
+        CellList { reach, ..CellList::default() }
     }
 
     /// Looks at all particles: their base nodes and numbers.

@@ -109,12 +109,6 @@ impl<const D: usize> Census<D> {
         here
     }
 
-    /// Of a census that all ranks have of the whole, what this one sees to.
-    pub fn part(mut self, ranks: &dyn Ranks) -> Self {
-        self.blocks.retain(|block, _| seer(*block, ranks.count()) == ranks.rank());
-        self
-    }
-
     /// Parts of space with about as many particles each, by what each rank sees to.
     pub fn partition(&self, ranks: &dyn Ranks) -> Partition {
         let loaded = self.blocks.iter().filter(|(_, counted)| counted.count > 0);

@@ -15,7 +15,7 @@ use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::{NotTakenUp, RemovedParticles, RestoreError, SavedState, Simulation, WrittenValues};
+use crate::door::{NotTakenUp, RemovedParticles, SavedState, Simulation, WrittenValues};
 use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress::{self, InitialStress};
@@ -77,23 +77,6 @@ pub(crate) fn build_share(
     build_for(scene, path, Keeping::Share(ranks))
 }
 
-/// [`build_among`], of a whole that begins in another way than the scene says.
-///
-/// # Errors
-/// `begin` refuses, on all ranks.
-pub(crate) fn build_among_from(
-    scene: &Scene,
-    path: ParticleLoop,
-    ranks: Arc<dyn Ranks>,
-    begin: impl FnOnce(&mut dyn Simulation) -> Result<(), RestoreError>,
-) -> Result<Box<dyn Shareable>, RestoreError> {
-    let mut whole =
-        build_for(scene, path, Keeping::All).map_err(|problem| RestoreError(problem.to_string()))?;
-    begin(&mut *whole)?;
-    whole.share(ranks);
-    Ok(whole)
-}
-
 /// A simulation without particles, which can [take up](Shareable::take_up_share) those of a saved state; all ranks
 /// build one.
 ///
@@ -118,8 +101,8 @@ enum Keeping<'a> {
 
 /// A simulation that ranks can share.
 pub(crate) trait Shareable: Simulation {
-    /// Keeps this rank's part.
-    fn share(&mut self, ranks: Arc<dyn Ranks>);
+    /// How many particles each body has on all ranks.
+    fn counts_of_all(&self) -> Vec<usize>;
 
     /// Takes up this rank's share of a saved state, with no particles before.
     ///
@@ -134,8 +117,8 @@ pub(crate) trait Shareable: Simulation {
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
-    fn share(&mut self, ranks: Arc<dyn Ranks>) {
-        self.divide(ranks);
+    fn counts_of_all(&self) -> Vec<usize> {
+        Engine::counts_of_all(self)
     }
 
     fn take_up_share(
@@ -236,8 +219,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             BasisKind::Spline => Some(0.5),
             BasisKind::Cubic => Some(1.0),
         };
-        let mut bodies = Vec::new();
-        let mut all_filled = Vec::new();
+        let mut bodies = Vec::with_capacity(scene.bodies.len());
+        let mut all_filled = Vec::with_capacity(scene.bodies.len());
+        let mut laws: Vec<Option<Arc<Material<T>>>> = vec![None; scene.materials.len()];
         let mut unbounded = Vec::new();
         let heated = heated_bodies(scene);
         for (number, body) in scene.bodies.iter().enumerate() {
@@ -289,7 +273,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             all_filled.push(filled.count);
             bodies.push(Body {
                 name: body.name.clone(),
-                material: material(scene, body)?,
+                material: {
+                    let law = &mut laws[body.material];
+                    if law.is_none() {
+                        *law = Some(Arc::new(material(scene, body)?));
+                    }
+                    law.clone().expect("it has been made")
+                },
                 density: T::of(scene.materials[body.material].density),
                 expansion: T::of(scene.materials[body.material].thermal_expansion),
                 particles: {
@@ -297,7 +287,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     let stresses = initial_stress::of_body(scene, number)?;
                     particles((own, &stresses), &filled.kept, (velocity, turning, density))
                 },
-                motion,
+                motion: motion.map(Box::new),
                 whole: whole::<D>(scene, number),
                 thickness: scene.dimension.thickness(),
                 gyration: rotation::gyration::<T, B>(cell, half_side),

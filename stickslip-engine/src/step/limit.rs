@@ -26,7 +26,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return Some(limit);
         }
         let (body, _) = self.longest_turns().min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-        let motion = self.state.bodies[body].motion.as_ref()?;
+        let motion = self.state.bodies[body].motion.as_deref()?;
         (turn < longest).then_some(StepLimit { body, particle: None, position: motion.center })
     }
 

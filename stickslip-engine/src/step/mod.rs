@@ -53,7 +53,8 @@ mod walls;
 mod watch;
 mod writing;
 
-pub(crate) use build::{Shareable, build_among_from, build_empty, build_share};
+pub(crate) use among::Find;
+pub(crate) use build::{Shareable, build_empty, build_share};
 pub use build::{build, build_among, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};

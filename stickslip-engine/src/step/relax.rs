@@ -61,7 +61,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let moved = |velocity: [f64; 3]| velocity != [0.0; 3];
         let driven = |motion: &RigidMotion| moved(motion.velocity()) || moved(motion.spin());
         let bodies = &self.state.bodies;
-        let mut motions = self.settings.rigid.iter().filter_map(|&body| bodies[body].motion.as_ref());
+        let mut motions = self.settings.rigid.iter().filter_map(|&body| bodies[body].motion.as_deref());
         let balanced = self.state.relaxation.residual <= residual;
         let (time, dt) = (self.state.time, self.stable());
         let end = self.settings.time.end;

@@ -64,7 +64,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     numbers: Vec::new(),
                     columns: if count == 0 { columns(&body.particles).collect() } else { Vec::new() },
                     missing: filled.saturating_sub(count),
-                    motion: body.motion.as_ref().map(|motion| motion.state()),
+                    motion: body.motion.as_deref().map(|motion| motion.state()),
                 })
                 .collect(),
             signal,
@@ -154,7 +154,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             if body.motion.is_some() != saved.motion.is_some() {
                 return Err(RestoreError(format!("body `{}` is rigid in one of the two only", body.name)));
             }
-            let motions = body.motion.as_ref().zip(saved.motion.as_ref());
+            let motions = body.motion.as_deref().zip(saved.motion.as_ref());
             if motions.is_some_and(|(motion, saved)| !motion.is_like(saved)) {
                 return Err(RestoreError(format!("body `{}` is free in one of the two only", body.name)));
             }
@@ -268,7 +268,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         for a in (0..carried.len()).filter(known) {
             let holder = body(a);
             let level = |x: [f64; 3]| {
-                let start = holder.motion.as_ref().map_or(x, |motion| motion.pose().start(x));
+                let start = holder.motion.as_deref().map_or(x, |motion| motion.pose().start(x));
                 holder.whole.level(start).distance
             };
             let together = |&b: &usize| carried[a].is_some() && carried[b].is_some();
@@ -385,6 +385,14 @@ fn begun<T: Laned, const D: usize>(
     body.particles.compare();
     if !same_start(&body.particles, &fresh.particles, NEAR) {
         return Err(off("began elsewhere than it does in the scene: its shape or its filling is another"));
+    }
+    // As the scene rounds it, with which the run goes on.
+    for entry in ColumnStart::<D>::START..ColumnStart::<D>::COUNT {
+        let mut starts = vec![T::ZERO; filled];
+        let known = fresh.particles.numbers().iter().zip(fresh.particles.line(entry));
+        known.for_each(|(&number, &start)| starts[number as usize] = start);
+        let line = body.particles.line_mut(entry).iter_mut();
+        line.zip(&numbers).for_each(|(x, &number)| *x = starts[number as usize]);
     }
     if state.of_snapshot {
         complete(&mut body, fresh).map_err(off)?;

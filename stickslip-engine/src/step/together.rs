@@ -23,7 +23,7 @@ pub struct LawRoom {
 pub(super) fn over_arrays<T: Real, const D: usize>(
     body: &Body<T, D>,
 ) -> Option<(Custom<T>, &'static dyn LawOverArrays)> {
-    let Material::Custom(custom) = body.material else { return None };
+    let Material::Custom(custom) = *body.material else { return None };
     custom.law().over_arrays().filter(|_| !body.is_rigid()).map(|law| (custom, law))
 }
 

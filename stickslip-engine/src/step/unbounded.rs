@@ -201,7 +201,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Motion of a body, if it is rigid and without bounds.
     pub(super) fn without_bounds(&self, body: usize) -> Option<&RigidMotion> {
         let unbounded = self.state.unbounded.iter().any(|unbounded| unbounded.body == body);
-        self.state.bodies[body].motion.as_ref().filter(|_| unbounded)
+        self.state.bodies[body].motion.as_deref().filter(|_| unbounded)
     }
 
     /// Gives rigid bodies without bounds particles around the blocks that deformable bodies have come to hold.

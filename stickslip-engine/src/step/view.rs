@@ -197,8 +197,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                         strain: 0.0,
                     };
                 }
-                if let Some(free) = body.motion.as_ref().and_then(RigidMotion::as_free) {
-                    let motion = body.motion.as_ref().expect("it is rigid");
+                if let Some(free) = body.motion.as_deref().and_then(RigidMotion::as_free) {
+                    let motion = body.motion.as_deref().expect("it is rigid");
                     let orbit = cross(motion.center, free.state.momentum);
                     return BodyState {
                         mass: free.mass,
@@ -254,7 +254,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
         };
         let gravity = Vector::<T, D>::of(self.settings.gravity.constant().unwrap_or_default()).space();
         let all = self.totals();
-        for motion in self.state.bodies.iter().filter_map(|body| body.motion.as_ref()) {
+        for motion in self.state.bodies.iter().filter_map(|body| body.motion.as_deref()) {
             let Some(free) = motion.as_free() else { continue };
             ledger.kinetic += free.kinetic();
             ledger.potential -= free.mass * dot(gravity, motion.center);
@@ -335,7 +335,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn poses(&self) -> Vec<Option<Pose>> {
-        self.state.bodies.iter().map(|body| body.motion.as_ref().map(RigidMotion::pose)).collect()
+        self.state.bodies.iter().map(|body| body.motion.as_deref().map(RigidMotion::pose)).collect()
     }
 
     fn snapshot(&self) -> ParticleSnapshot {

@@ -76,7 +76,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     ) -> Result<(), WriteError> {
         let body = &mut self.state.bodies[number];
         let named = || body.name.clone();
-        let Some((motion, free)) = body.motion.as_ref().and_then(|motion| Some((motion, motion.as_free()?)))
+        let Some((motion, free)) =
+            body.motion.as_deref().and_then(|motion| Some((motion, motion.as_free()?)))
         else {
             return Err(WriteError::Prescribed { body: named() });
         };
@@ -105,7 +106,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             body.particles.set(i, &particle);
         }
         let after = moving.as_free().map(|free| Holding::of_rigid(&moving, free)).expect("it is free");
-        body.motion = Some(moving);
+        body.motion = Some(Box::new(moving));
         self.state.written[number].take(&before, &after);
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
         Ok(())

@@ -5,9 +5,12 @@ use super::folder::OutputFolder;
 use crate::check::Warning;
 use crate::door::{RankShare, RelaxationState};
 use crate::scene::{Loaded, Scene, SceneError, load, parse};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The record of a run. It is there from the first moment of the run, so that a folder of results is known as one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,9 +69,56 @@ pub struct Manifest {
     /// Where the scene came from, if from a file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<SceneSource>,
-    /// The scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
-    /// [`Results::scene`](super::Results::scene) reads it.
-    pub scene: serde_json::Value,
+    /// The scene as run. [`Results::scene`](super::Results::scene) reads it.
+    pub scene: SceneRecord,
+}
+
+/// A scene as run, in SI units, parameters resolved; numbers that are infinite stand as `null`.
+#[derive(Clone, Debug)]
+pub struct SceneRecord(Recorded);
+
+#[derive(Clone, Debug)]
+enum Recorded {
+    /// Of a run that this process makes: a fraction of what its text would take.
+    Here(Arc<Scene>),
+    /// Of a record that was read.
+    Read(Value),
+}
+
+impl SceneRecord {
+    /// That of a scene which runs here.
+    pub fn new(scene: &Scene) -> Self {
+        SceneRecord(Recorded::Here(Arc::new(scene.clone())))
+    }
+
+    /// What it says.
+    pub fn value(&self) -> Cow<'_, Value> {
+        match &self.0 {
+            Recorded::Here(scene) => Cow::Owned(Manifest::record(scene)),
+            Recorded::Read(value) => Cow::Borrowed(value),
+        }
+    }
+}
+
+impl PartialEq for SceneRecord {
+    fn eq(&self, other: &Self) -> bool {
+        self.value() == other.value()
+    }
+}
+
+impl Serialize for SceneRecord {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.0 {
+            Recorded::Here(scene) => scene.serialize(serializer),
+            Recorded::Read(value) => value.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for SceneRecord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(SceneRecord(Recorded::Read(Value::deserialize(deserializer)?)))
+    }
 }
 
 /// The state of another run, from which bodies begin.
@@ -252,12 +302,12 @@ impl Manifest {
             tables: BTreeMap::new(),
             references: reference_curves(scene),
             source: None,
-            scene: Self::record(scene),
+            scene: SceneRecord::new(scene),
         }
     }
 
     /// A scene as the record has it.
-    pub fn record(scene: &Scene) -> serde_json::Value {
+    pub fn record(scene: &Scene) -> Value {
         serde_json::to_value(scene).expect("a scene is plain data whose keys are text")
     }
 
@@ -318,8 +368,7 @@ impl Manifest {
 }
 
 /// Puts U+FFFD in the place of each control character in a text of a record; new lines and tabs stay.
-fn replace_control_characters(record: &mut serde_json::Value) {
-    use serde_json::Value;
+fn replace_control_characters(record: &mut Value) {
     let steers = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\r' | '\t');
     match record {
         Value::String(text) if text.contains(steers) => *text = text.replace(steers, "\u{fffd}"),

@@ -60,7 +60,7 @@ pub use groups::{GroupContactRow, GroupRow};
 pub use joints::JointRow;
 pub use loads::LoadRow;
 pub use manifest::{
-    BegunFrom, Manifest, Performance, ReferenceCurve, RunWarning, SceneSource, Status, Timing,
+    BegunFrom, Manifest, Performance, ReferenceCurve, RunWarning, SceneRecord, SceneSource, Status, Timing,
 };
 pub use memory::Memory;
 pub use network::Network;

@@ -59,7 +59,7 @@ impl Results {
     /// # Errors
     /// Another version of the program wrote it.
     pub fn scene(&self) -> Result<RecordedScene, ReadError> {
-        RecordedScene::deserialize(&self.manifest.scene)
+        RecordedScene::deserialize(&*self.manifest.scene.value())
             .map_err(|error| ReadProblem::from(error).at(&self.folder.join(Manifest::FILE)))
     }
 
@@ -76,7 +76,8 @@ impl Results {
     /// Whether snapshots hold every particle of their bodies with all columns that pictures, fringes and
     /// [`Results::particles`] need.
     pub fn has_whole_snapshots(&self) -> bool {
-        let asked = |key: &str| self.manifest.scene.pointer(&format!("/outputs/snapshots/{key}"));
+        let scene = self.manifest.scene.value();
+        let asked = |key: &str| scene.pointer(&format!("/outputs/snapshots/{key}"));
         if asked("every").and_then(|every| every.as_u64()).is_some_and(|every| every > 1) {
             return false;
         }

@@ -24,11 +24,15 @@ pub fn state_sum(state: &SavedState) -> String {
 /// none of a simulation that has no state as data.
 pub fn present_state_sum(scene: &Scene, simulation: &dyn Simulation) -> Option<String> {
     let mut sum = StateSum::default();
-    for (number, body) in scene.bodies.iter().enumerate() {
-        sum.add(body.name.as_bytes());
-        if !simulation.visit_bytes(number, &mut |bytes| sum.add(bytes)) {
-            return None;
+    let mut names = scene.bodies.iter().enumerate().peekable();
+    let has_state = simulation.visit_bytes(0..scene.bodies.len(), &mut |body, bytes| {
+        while let Some((_, begun)) = names.next_if(|(number, _)| *number <= body) {
+            sum.add(begun.name.as_bytes());
         }
+        sum.add(bytes);
+    });
+    if !has_state {
+        return None;
     }
     Some(sum.finish(simulation.time(), simulation.steps()))
 }

@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn a_disk_presses_a_rigid_floor_with_its_weight_per_metre() {
         let mut floor = free("floor", 1, Shape::Box { min: [-2.0, -1.0, 0.0], max: [2.0, 0.0, 0.0] });
-        let still = || [0.0; 3].map(Expression::Constant);
+        let still = || Box::new([0.0; 3].map(Expression::Constant));
         floor.motion = BodyMotion::Rigid { velocity: still(), spin: still() };
         let disk = free("disk", 0, Shape::Ball { center: [0.0, 0.5, 0.0], radius: 0.5 });
         let mut scene = scene(Dimension::PlaneStrain, 0.1, vec![floor, disk]);

@@ -132,7 +132,7 @@ mod tests {
 
     fn block(name: &str, x: f64, velocity: [f64; 3], spin: f64) -> Body {
         let shape = Shape::Box { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 0.0] };
-        let [velocity, spin] = [velocity, [0.0, 0.0, spin]].map(|v| v.map(Expression::Constant));
+        let [velocity, spin] = [velocity, [0.0, 0.0, spin]].map(|v| Box::new(v.map(Expression::Constant)));
         Body { motion: BodyMotion::Rigid { velocity, spin }, ..free(name, 1, shape) }
     }
 

@@ -314,8 +314,8 @@ mod tests {
         assert_eq!(check(&rolling).expect_err("about x").key, "bodies[0].spin");
         let mut leaving = plane();
         let [zero, one] = [0.0, 1.0].map(Expression::Constant);
-        let spin = [zero.clone(), zero.clone(), one.clone()];
-        leaving.bodies[0].motion = BodyMotion::Rigid { velocity: [zero.clone(), zero, one], spin };
+        let spin = Box::new([zero.clone(), zero.clone(), one.clone()]);
+        leaving.bodies[0].motion = BodyMotion::Rigid { velocity: Box::new([zero.clone(), zero, one]), spin };
         assert_eq!(check(&leaving).expect_err("along z").key, "bodies[0].velocity");
     }
 }

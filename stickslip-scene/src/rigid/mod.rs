@@ -69,7 +69,7 @@ impl RigidMotion {
         match motion {
             BodyMotion::Free { .. } | BodyMotion::FreeRigid(_) => None,
             BodyMotion::Rigid { velocity, spin } => {
-                Some(RigidMotion::new(center, velocity.clone(), spin.clone()))
+                Some(RigidMotion::new(center, *velocity.clone(), *spin.clone()))
             }
         }
     }

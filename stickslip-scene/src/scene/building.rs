@@ -221,13 +221,13 @@ impl Body {
     /// The same body with this Cauchy stress everywhere before anything moves: xx, yy, zz, xy, yz, xz, tension positive
     /// [Pa].
     pub fn stressed(self, stress: [f64; 6]) -> Self {
-        Body { stress: Some(stress.map(Expression::Constant)), ..self }
+        Body { stress: Some(Box::new(stress.map(Expression::Constant))), ..self }
     }
 
     /// The same body, rigid, moved at this velocity [m/s] and turned at this angular velocity [rad/s] whatever pushes
     /// it.
     pub fn rigid(self, velocity: [f64; 3], spin: [f64; 3]) -> Self {
-        let [velocity, spin] = [velocity, spin].map(|vector| vector.map(Expression::Constant));
+        let [velocity, spin] = [velocity, spin].map(|vector| Box::new(vector.map(Expression::Constant)));
         Body { motion: BodyMotion::Rigid { velocity, spin }, ..self }
     }
 }

@@ -435,7 +435,7 @@ pub struct Body {
     /// How it moves.
     pub motion: BodyMotion,
     /// Cauchy stress before anything moves, by the place: xx, yy, zz, xy, yz, xz, tension positive [Pa]; `None`: none.
-    pub stress: Option<[Expression; 6]>,
+    pub stress: Option<Box<[Expression; 6]>>,
 }
 
 /// How a body moves.
@@ -452,9 +452,9 @@ pub enum BodyMotion {
     /// It is rigid and moves as prescribed, whatever pushes it.
     Rigid {
         /// Velocity of its centre of mass at time t [m/s].
-        velocity: [Expression; 3],
+        velocity: Box<[Expression; 3]>,
         /// Angular velocity about its centre of mass at time t [rad/s].
-        spin: [Expression; 3],
+        spin: Box<[Expression; 3]>,
     },
     /// It is rigid and moves under forces, from this start.
     FreeRigid(FreeRigid),

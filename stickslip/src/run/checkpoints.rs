@@ -2,8 +2,8 @@
 
 use crate::door::{RestoreError, Simulation, View};
 use crate::observe::{
-    Checkpoint, CheckpointForm, Manifest, Memory, OutputError, OutputFolder, ReadError, Schedule, Status,
-    Writer,
+    Checkpoint, CheckpointForm, Manifest, Memory, OutputError, OutputFolder, ReadError, SceneRecord,
+    Schedule, Status, Writer,
 };
 use crate::scene::Scene;
 use miette::Diagnostic;
@@ -125,7 +125,7 @@ pub(super) struct Checkpoints {
     schedule: Schedule,
     last: Instant,
     folder: OutputFolder,
-    scene: Value,
+    scene: SceneRecord,
     writer: Writer<()>,
     /// Whether the folder for them is made.
     prepared: bool,
@@ -134,7 +134,7 @@ pub(super) struct Checkpoints {
 
 impl Checkpoints {
     pub(super) fn new(
-        (scene, record): (&Scene, Value),
+        (scene, record): (&Scene, SceneRecord),
         folder: &OutputFolder,
         options: &Checkpointing,
         view: &dyn View,
@@ -245,7 +245,7 @@ pub fn unfinished(folder: &Path, scene: &Scene) -> Result<Option<PathBuf>, ReadE
         Status::Finished => false,
         Status::Running | Status::OutOfTime => true,
         Status::Interrupted | Status::Stopped | Status::Failed => {
-            same_physics(folder, &before.scene, &Manifest::record(scene)).is_ok()
+            same_physics(folder, &before.scene.value(), &Manifest::record(scene)).is_ok()
         }
     };
     if !could_go_on || Checkpoint::list(folder)?.is_empty() || OutputFolder::reopen(folder).is_err() {

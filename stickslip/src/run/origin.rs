@@ -68,7 +68,7 @@ impl Origin {
     ) -> Result<Self, ResumeError> {
         verify_snapshot(folder, &frame.path)?;
         let (from, names) = (frame.path.clone(), results.body_names());
-        let recorded = RecordedBodies { record: &results.manifest().scene, names };
+        let recorded = RecordedBodies { record: &results.manifest().scene.value(), names };
         let missing = recorded.missing(scene, &ParticleFile::open(&from)?, view);
         if !missing.is_empty() {
             return Err(ResumeError::Lacks { path: from, missing });
@@ -175,7 +175,7 @@ impl RecordedBodies<'_> {
             }
             let unmoved = |motion: &BodyMotion| match motion {
                 BodyMotion::Rigid { velocity, spin } => {
-                    velocity.iter().chain(spin).all(|of| matches!(of, Expression::Constant(0.0)))
+                    velocity.iter().chain(spin.iter()).all(|of| matches!(of, Expression::Constant(0.0)))
                 }
                 _ => true,
             };

@@ -11,6 +11,7 @@ use crate::material::{Isotropic, Material, NeoHookean, Thickness};
 use crate::particles::{ColumnStart, DOMAINS, OwnColumns, Particles, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
+use std::sync::Arc;
 
 /// The boxes as which nodes see particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,9 +55,9 @@ fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
     particles.deform_domains(0.5);
     Body {
         name: String::new(),
-        material: Material::NeoHookean(NeoHookean {
+        material: Arc::new(Material::NeoHookean(NeoHookean {
             elastic: Isotropic { bulk_modulus: 1.0, shear_modulus: 1.0 },
-        }),
+        })),
         density: 1.0,
         expansion: 0.0,
         particles,

@@ -25,7 +25,7 @@ use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, Shown, number_of, write_number};
 use crate::ranks::{
-    BlockLoad, Census, Message, Partition, Ranks, SentAndWaited, add_up, added, bytes_of, combined, gathered,
+    BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up, added, bytes_of, combined, gathered,
     largest, message_to, read,
 };
 use crate::scene::{self, BodyMotion, Face, Load, NamedMaterial, OutsideValue, Problem, Scene};
@@ -309,31 +309,6 @@ impl<T: Laned> Among<T> {
 const SLOTS: usize = 8;
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// Keeps the particles in this rank's share of the blocks, and forgets the others. All ranks begin with all of
-    /// them.
-    pub(super) fn divide(&mut self, ranks: Arc<dyn Ranks>) {
-        let mut census = Census::new(self.settings.lattice.periods);
-        for (body, Body { particles, .. }) in self.state.bodies.iter().enumerate() {
-            (0..particles.len()).for_each(|particle| census.count(body, self.block_of(particles, particle)));
-        }
-        let partition = census.part(&*ranks).partition(&*ranks);
-        let homes = self.state.bodies.iter().zip(&self.settings.filled).map(|(body, &filled)| {
-            let is_there = filled > 0 && !body.particles.is_empty();
-            let rank = if is_there { partition.owner(self.block_of(&body.particles, 0)) } else { 0 };
-            Home::new(rank, filled)
-        });
-        let homes = homes.collect();
-        self.join(ranks, (partition, homes));
-        let among = self.among.as_ref().expect("it has joined the others");
-        self.state.contact_sums.keep(|bodies| among.keeps(bodies));
-        for body in 0..self.state.bodies.len() {
-            let gone = self.of_other_ranks(&self.state.bodies[body].particles);
-            let particles = &mut self.state.bodies[body].particles;
-            particles.remove(&gone);
-            particles.fit();
-        }
-    }
-
     /// Becomes one of several ranks, with its particles in its share of the blocks.
     pub(super) fn join(&mut self, ranks: Arc<dyn Ranks>, (partition, homes): (Partition, Vec<Home>)) {
         self.among = Some(Among {
@@ -626,7 +601,9 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         _ => false,
     };
     let moves_by_function = |body: &scene::Body| match &body.motion {
-        BodyMotion::Rigid { velocity, spin } => velocity.iter().chain(spin).any(|of| of.outside().is_some()),
+        BodyMotion::Rigid { velocity, spin } => {
+            velocity.iter().chain(spin.iter()).any(|of| of.outside().is_some())
+        }
         _ => false,
     };
     let by_function = |load: &Load| load.action.outside().and_then(OutsideValue::function).is_some();

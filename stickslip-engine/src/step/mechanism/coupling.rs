@@ -95,7 +95,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
     ) -> bool {
         let dt = self.solve.step.duration.f64();
         for free in &mut mechanism.bodies {
-            let state = bodies[free.index].motion.as_ref().and_then(|motion| motion.as_free());
+            let state = bodies[free.index].motion.as_deref().and_then(|motion| motion.as_free());
             let state = state.expect("it is free").state;
             free.target = join(state.momentum, state.angular_momentum);
         }
@@ -107,7 +107,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             self.find_touches(bodies, mechanism, dt);
             for free in &mut mechanism.bodies {
                 free.momenta = free.target;
-                let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
+                let motion = bodies[free.index].motion.as_deref_mut().expect("it is rigid");
                 motion.set_momenta(six::parts(free.target), dt);
             }
             settled = self.iterate(bodies, mechanism, &touched, listed);
@@ -143,7 +143,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
     ) -> bool {
         let dt = self.solve.step.duration.f64();
         let far = mechanism.bodies.iter().map(|free| {
-            let motion = bodies[free.index].motion.as_ref().expect("it is rigid");
+            let motion = bodies[free.index].motion.as_deref().expect("it is rigid");
             free.radius + Vector(motion.center).norm()
         });
         // Places are no nearer than round-off.
@@ -170,7 +170,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
                 let gained = free.inertia.times(change);
                 six::add(&mut free.momenta, 1.0, &gained);
-                let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
+                let motion = bodies[free.index].motion.as_deref_mut().expect("it is rigid");
                 motion.set_momenta(six::parts(free.momenta), dt);
                 moved = moved.max(free.size(change));
                 speed = speed.max(free.speed(bodies)).max(free.size(&free.start)).max(free.pushed());
@@ -213,7 +213,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
     /// Gives nodes the velocities that free bodies have there.
     fn move_nodes(&self, bodies: &[Body<T, D>], (free, touched): (&[FreeBody], &[TouchedNode])) {
         for node in touched {
-            let motion = bodies[free[node.body].index].motion.as_ref().expect("it is rigid");
+            let motion = bodies[free[node.body].index].motion.as_deref().expect("it is rigid");
             let velocities = join(motion.velocity(), motion.spin());
             // SAFETY: nobody else looks at the nodes meanwhile.
             unsafe { self.solve.nodes.get(node.index) }.prescribe(super::velocity_at(&velocities, node.arm));
@@ -327,7 +327,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
 
     /// How far the equations are from holding with the velocities found so far.
     fn find_off(&self, bodies: &[Body<T, D>], mechanism: &mut Mechanism, dt: f64) {
-        let motion = |body: usize| bodies[body].motion.as_ref().expect("joints hold rigid bodies");
+        let motion = |body: usize| bodies[body].motion.as_deref().expect("joints hold rigid bodies");
         let mut rows = mechanism.rows.iter_mut().peekable();
         for (number, joint) in self.joints.iter().enumerate() {
             if rows.peek().is_none_or(|held: &&mut JointRow| held.joint != number) {
@@ -360,7 +360,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
     fn missed(&self, bodies: &[Body<T, D>], mechanism: &Mechanism, dt: f64) -> bool {
         let Some(surfaces) = self.surfaces else { return false };
         surfaces.contacts(bodies, self.solve.rules, dt).iter().any(|contact| {
-            let motions = contact.bodies.map(|body| bodies[body].motion.as_ref().expect("it is rigid"));
+            let motions = contact.bodies.map(|body| bodies[body].motion.as_deref().expect("it is rigid"));
             let velocities = motions.map(|motion| join(motion.velocity(), motion.spin()));
             let centers = contact.centers(motions.map(|motion| motion.center));
             let relative = contact.relative(velocities.each_ref(), centers);
@@ -377,7 +377,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let Some(surfaces) = self.surfaces else { return };
         let rules = self.solve.rules;
         for contact in surfaces.contacts(bodies, rules, dt) {
-            let motions = contact.bodies.map(|body| bodies[body].motion.as_ref().expect("it is rigid"));
+            let motions = contact.bodies.map(|body| bodies[body].motion.as_deref().expect("it is rigid"));
             let slots = contact.bodies.map(|body| mechanism.slot(body));
             let start = [0, 1].map(|side| match slots[side] {
                 Some(slot) => mechanism.bodies[slot].start,
@@ -432,7 +432,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             links[held.joint].take(&held.row);
         }
         for free in &mechanism.bodies {
-            let motion = bodies[free.index].motion.as_mut().expect("it is rigid");
+            let motion = bodies[free.index].motion.as_deref_mut().expect("it is rigid");
             motion.set_momenta(six::parts(free.momenta), dt);
         }
     }
@@ -440,7 +440,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
 
 /// From a rigid body's centre to a node [m].
 fn arm<T: Real, const D: usize>(lattice: &Lattice<T, D>, node: [i32; D], body: &Body<T, D>) -> [f64; 3] {
-    let center = body.motion.as_ref().expect("it is rigid").center;
+    let center = body.motion.as_deref().expect("it is rigid").center;
     let place = lattice.position_near(node, center);
     std::array::from_fn(|i| if i < D { place[i] - center[i] } else { 0.0 })
 }

@@ -106,7 +106,7 @@ impl JointSums {
 
     /// Measures the joint where the bodies are now.
     pub fn measure<T, const D: usize>(&mut self, joint: &Joint, bodies: &[Body<T, D>], dt: f64) {
-        let pose = |body: usize| bodies[body].motion.as_ref().expect("joints hold rigid bodies").pose();
+        let pose = |body: usize| bodies[body].motion.as_deref().expect("joints hold rigid bodies").pose();
         let found = way(joint, &poses(joint, pose), pose(joint.body).begun());
         let mut change = found - self.way;
         if matches!(joint.kind, JointKind::Hinge { .. }) {
@@ -120,7 +120,7 @@ impl JointSums {
 impl Link {
     /// A joint where its bodies are now.
     pub fn new<T, const D: usize>(joint: &Joint, bodies: &[Body<T, D>]) -> Self {
-        let motion = |body: usize| bodies[body].motion.as_ref().expect("joints hold rigid bodies");
+        let motion = |body: usize| bodies[body].motion.as_deref().expect("joints hold rigid bodies");
         let [a, b] = poses(joint, |body| motion(body).pose());
         let center = motion(joint.body).pose().begun();
         let [p, q] = points(joint, center);
@@ -151,7 +151,7 @@ impl Link {
         way: f64,
     ) -> [Six; 2] {
         let six = |body: usize| {
-            let motion = bodies[body].motion.as_ref().expect("joints hold rigid bodies");
+            let motion = bodies[body].motion.as_deref().expect("joints hold rigid bodies");
             join(motion.velocity(), motion.spin())
         };
         let velocities = [six(joint.body), joint.to.map_or([0.0; 6], six)];

@@ -115,7 +115,7 @@ impl Mechanism {
         (place, impulse): ([f64; 3], [f64; 3]),
     ) {
         let Some(slot) = self.slot(body) else { return };
-        let motion = bodies[body].motion.as_mut().expect("free bodies are rigid");
+        let motion = bodies[body].motion.as_deref_mut().expect("free bodies are rigid");
         let arm = (Vector(place) - Vector(motion.center)).0;
         let free = &mut self.bodies[slot];
         six::add(&mut free.target, 1.0, &six::at(arm, impulse));
@@ -149,7 +149,7 @@ impl FreeBody {
 
     /// How fast the body is now [m/s].
     fn speed<T, const D: usize>(&self, bodies: &[Body<T, D>]) -> f64 {
-        let motion = bodies[self.index].motion.as_ref().expect("it is rigid");
+        let motion = bodies[self.index].motion.as_deref().expect("it is rigid");
         self.size(&join(motion.velocity(), motion.spin()))
     }
 
@@ -169,7 +169,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let gravity = self.gravity(T::ZERO).norm().f64();
         let bodies = &self.state.bodies;
-        let of = |index: usize| FreeBody::new(index, bodies[index].motion.as_ref()?);
+        let of = |index: usize| FreeBody::new(index, bodies[index].motion.as_deref()?);
         let mechanism = &mut self.workspace.mechanism;
         mechanism.time = self.state.time;
         mechanism.gravity = gravity;
@@ -209,7 +209,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
         }
         for (free, impulse) in mechanism.bodies.iter_mut().zip(&impulses) {
-            let motion = bodies[free.index].motion.as_mut().expect("free bodies are rigid");
+            let motion = bodies[free.index].motion.as_deref_mut().expect("free bodies are rigid");
             // After contact on the interpolated velocities, if there was any.
             let state = motion.as_free().expect("it is free").state;
             free.target = join(state.momentum, state.angular_momentum);
@@ -239,7 +239,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let packed = self.settings.joints.is_empty()
             && self.needs_no_grid()
             && sweeps::packed(self.state.touch_forces.len());
-        let motions = self.settings.rigid.iter().map(|&body| (body, self.state.bodies[body].motion.as_ref()));
+        let motions =
+            self.settings.rigid.iter().map(|&body| (body, self.state.bodies[body].motion.as_deref()));
         let free =
             motions.filter_map(|(body, motion)| Some((body, motion.filter(|it| it.as_free().is_some())?)));
         free.map(move |(body, motion)| {
@@ -260,7 +261,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mechanism = &*mechanism;
         let bodies = &self.state.bodies;
         let mean = |body: usize| {
-            let motion = bodies[body].motion.as_ref().expect("joints and these contacts are of rigid bodies");
+            let motion =
+                bodies[body].motion.as_deref().expect("joints and these contacts are of rigid bodies");
             let after = join(motion.velocity(), motion.spin());
             match mechanism.slot(body) {
                 Some(slot) => std::array::from_fn(|k| 0.5 * (mechanism.bodies[slot].start[k] + after[k])),

@@ -240,7 +240,7 @@ impl RigidSurfaces {
         }
     }
 
-    fn between<T: Sync, const D: usize>(
+    fn between<T: Send + Sync, const D: usize>(
         &self,
         pair: [&PlacedSurface<T, D>; 2],
         found: &mut Vec<RigidContact>,
@@ -342,7 +342,7 @@ struct PlacedSurface<'a, T, const D: usize> {
 
 impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
     fn new(surface: &'a RigidSurface, body: &'a Body<T, D>, dt: f64) -> Self {
-        let motion = body.motion.as_ref().expect("it is rigid");
+        let motion = body.motion.as_deref().expect("it is rigid");
         let pose = motion.pose();
         let (center, reach) = (pose.now(surface.center), surface.reach);
         let way = surface.way((motion, center), dt);

@@ -21,6 +21,7 @@ use super::file::{
     OutputError, ReadError, ReadProblem, open_file, read_bytes, replace_by, replace_for_good, secure_name,
 };
 use super::folder::OutputFolder;
+use super::manifest::SceneRecord;
 use super::memory::{Memory, Values};
 use super::shared;
 use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation};
@@ -73,10 +74,10 @@ pub(super) const START: usize = MAGIC.len() + size_of::<u32>();
 
 impl Checkpoint {
     /// A moment of the run of a scene.
-    pub fn new(scene: &serde_json::Value, state: SavedState, memory: Memory) -> Self {
+    pub fn new(scene: &SceneRecord, state: SavedState, memory: Memory) -> Self {
         Checkpoint {
             program: env!("CARGO_PKG_VERSION").to_string(),
-            scene: scene.to_string(),
+            scene: serde_json::to_string(scene).expect("a scene is plain data whose keys are text"),
             state,
             memory: memory.into_values(),
             sections: Vec::new(),

@@ -234,7 +234,7 @@ impl Body {
         }
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
         body.motion = keys.motion(context)?;
-        body.stress = self.stress.as_ref().map(|stress| stress.resolve(context)).transpose()?;
+        body.stress = self.stress.as_ref().map(|stress| stress.resolve(context).map(Box::new)).transpose()?;
         Ok(body)
     }
 }
@@ -277,17 +277,16 @@ impl BodyKeys<'_> {
             return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
         }
         let rest = || Ok([0.0; 3].map(Expression::Constant));
-        Ok(BodyMotion::Rigid {
-            velocity: rigid.velocity.as_ref().map_or_else(rest, |velocity| {
-                velocity.resolve(
-                    context,
-                    |i| i < context.dimension.axes(),
-                    |v| v.resolve(context, Dependence::Time),
-                )
-            })?,
-            spin: rigid.spin.as_ref().map_or_else(rest, |spin| {
-                spin.resolve(context, |i| i == 2 || !context.dimension.is_plane(), |w| w.resolve(context))
-            })?,
-        })
+        let velocity = rigid.velocity.as_ref().map_or_else(rest, |velocity| {
+            velocity.resolve(
+                context,
+                |i| i < context.dimension.axes(),
+                |v| v.resolve(context, Dependence::Time),
+            )
+        });
+        let spin = rigid.spin.as_ref().map_or_else(rest, |spin| {
+            spin.resolve(context, |i| i == 2 || !context.dimension.is_plane(), |w| w.resolve(context))
+        });
+        Ok(BodyMotion::Rigid { velocity: Box::new(velocity?), spin: Box::new(spin?) })
     }
 }

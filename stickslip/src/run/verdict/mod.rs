@@ -251,9 +251,7 @@ impl RunChecks {
         self.looks += 1;
         let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
         self.balance.update(&ledger);
-        let particles: Vec<_> = (self.neighbours.iter_mut().enumerate())
-            .map(|(body, neighbours)| neighbours.particles(simulation, body))
-            .collect();
+        let particles = neighbours::particles(&mut self.neighbours, simulation);
         let look = CheckInputs {
             scene,
             simulation,

@@ -23,15 +23,20 @@ pub(super) struct Neighbours {
 /// Particles in all bodies that deform whose neighbours are chosen; in a body at least [`FEWEST`] of them.
 const MOST: usize = 500;
 const FEWEST: usize = 24;
+/// Of more bodies that deform, so many are looked at, spread evenly over the list.
+const MOST_BODIES: usize = 1 << 14;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
 const NEAR: f64 = 1.5;
 /// Neighbours in each body; none in a rigid one.
 pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
     // Rigid ones do not count: without bounds they have others all the time.
-    let deforms = |i: &usize| !scene.bodies[*i].is_rigid();
-    let extents: Vec<Extent> = (0..scene.bodies.len())
-        .map(|i| if deforms(&i) { Extent::of(view, i) } else { Extent::default() })
-        .collect();
+    let deforming = (0..scene.bodies.len()).filter(|&i| !scene.bodies[i].is_rigid());
+    let deforming: Vec<usize> = deforming.collect();
+    let looked_at = chosen(deforming.len(), MOST_BODIES);
+    let mut extents = vec![Extent::default(); scene.bodies.len()];
+    for body in looked_at.into_iter().map(|place| deforming[place as usize]) {
+        extents[body] = Extent::of(view, body);
+    }
     let all = extents.iter().map(|extent| extent.count).sum();
     (extents.into_iter().enumerate())
         .map(|(i, extent)| match extent.count {
@@ -136,20 +141,19 @@ impl Neighbours {
         })
     }
 
-    /// The chosen particles now, in the order of `start`; those that have left the domain are chosen no more.
-    pub(super) fn particles(&mut self, view: &dyn View, body: usize) -> Vec<TracedParticle> {
-        if self.start.is_empty() {
-            return Vec::new();
-        }
-        let place = |number: u32| self.place.get(&number).copied();
+    /// The numbers of the chosen particles, ascending.
+    fn wanted(&self) -> Vec<u32> {
         let mut wanted = self.numbers.clone();
         wanted.sort_unstable();
-        let mut traced = view.trace(body, &wanted);
-        traced.sort_unstable_by_key(|particle| place(particle.number));
+        wanted
+    }
+
+    /// Brings the chosen particles into the order of `start`; those that have left the domain are chosen no more.
+    fn order(&mut self, traced: &mut [TracedParticle]) {
+        traced.sort_unstable_by_key(|particle| self.place.get(&particle.number).copied());
         if traced.len() < self.start.len() {
             self.keep(traced.iter().map(|particle| particle.number).collect());
         }
-        traced
     }
 
     /// Chooses these only, of those that are chosen, in the same order.
@@ -188,6 +192,19 @@ impl Neighbours {
         }
         Ok(())
     }
+}
+
+/// The chosen particles of each body now, in the order in which they are there at its start.
+pub(super) fn particles(of_bodies: &mut [Neighbours], view: &dyn View) -> Vec<Vec<TracedParticle>> {
+    let chosen = of_bodies.iter().enumerate().filter(|(_, neighbours)| !neighbours.start.is_empty());
+    let wanted: Vec<(usize, Vec<u32>)> =
+        chosen.map(|(body, neighbours)| (body, neighbours.wanted())).collect();
+    let mut particles = vec![Vec::new(); of_bodies.len()];
+    for ((body, _), mut traced) in wanted.iter().zip(view.trace_each(&wanted)) {
+        of_bodies[*body].order(&mut traced);
+        particles[*body] = traced;
+    }
+    particles
 }
 
 /// So many of the numbers below `count`, ascending: one in each equal part, anywhere in it, so that no row of a lattice
