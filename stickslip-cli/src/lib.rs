@@ -31,7 +31,7 @@ use std::ffi::OsString;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// After so long the first of several processes has told what is wrong.
+/// So long the first of several processes may take to tell what is wrong.
 const UNTIL_TOLD: Duration = Duration::from_secs(2);
 
 /// How another program is called that brings the command along.
@@ -62,17 +62,18 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
         (Ok(command), None) => command.execute(),
         (Ok(command), Some(launched)) => launched.execute(command),
         (Err(error), _) => {
-            if tells(together) {
+            let code = u8::try_from(error.exit_code()).unwrap_or(1);
+            if tells(together, code) {
                 // Nobody can be told of an output that takes nothing.
                 let _ = error.print();
             }
-            return u8::try_from(error.exit_code()).unwrap_or(1);
+            return code;
         }
     };
     match ended {
         Ok(()) => 0,
         Err(failure) => {
-            if tells(together) {
+            if tells(together, failure.exit_code()) {
                 failure.print();
             }
             failure.exit_code()
@@ -80,11 +81,11 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Whether this process tells what is wrong: of several only the first. A launcher ends all as soon as one has ended
-/// with another code than 0, so the others wait until it has told.
-fn tells(together: Option<ranks::Launched>) -> bool {
+/// Whether this process tells why it ends with a code: of several only the first. A launcher ends all as soon as one
+/// has ended with another code than 0, so the others give it time to tell.
+fn tells(together: Option<ranks::Launched>, code: u8) -> bool {
     let tells = together.is_none_or(ranks::Launched::is_first);
-    if !tells {
+    if !tells && code != 0 {
         std::thread::sleep(UNTIL_TOLD);
     }
     tells

@@ -164,6 +164,7 @@ fn a_sweep_goes_on_where_it_was() {
         (&["sweep", "part", "--only", "3"], "numbers from 0 to 2"),
         (&["sweep", "scene.toml", "--gather"], "the folder of a sweep"),
         (&["sweep", "."], "is not the folder of a sweep"),
+        (&["sweep", "nowhere.sweep"], "No such file"),
     ];
     for (arguments, expected) in refused {
         let ran = workplace.run(arguments);

@@ -91,8 +91,10 @@ pub fn among_threads<X: Send>(
 
 /// Particles that the first rank is shown at a time, of all ranks together.
 const SHOWN_AT_A_TIME: usize = 1 << 16;
-/// Particles of a body of which it sees the bytes of an entry at a time, and of several bodies those of all entries.
+/// Particles of a body of which it sees the bytes of an entry at a time; of several bodies those of all entries.
 const BYTES_OF_AT_A_TIME: usize = if cfg!(test) { 300 } else { 1 << 17 };
+/// A body among several counts as so many particles more.
+const OF_A_BODY: usize = 16;
 
 /// What the first rank asks of all, itself included.
 #[derive(Serialize, Deserialize)]
@@ -309,7 +311,7 @@ impl<'a> Part<'a> {
         while first < bodies.end {
             let mut sum = 0;
             let fit = (first..bodies.end).take_while(|&body| {
-                sum += counts[body];
+                sum += counts[body] + OF_A_BODY;
                 sum <= BYTES_OF_AT_A_TIME
             });
             let several = first..first + fit.count();
@@ -324,8 +326,8 @@ impl<'a> Part<'a> {
 
     /// The same of bodies that find room in one place.
     fn visit_bytes_of_several(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
-        let mut has_state = true;
-        let own = bodies.clone().map(|body| {
+        let (mut has_state, mut own, mut names) = (true, Vec::new(), Vec::new());
+        for body in bodies.clone() {
             let mut share = SavedShare { body, numbers: Vec::new(), columns: Vec::new() };
             has_state &= self.own.save_columns(body, &mut |numbers, column| {
                 if share.columns.is_empty() {
@@ -333,15 +335,16 @@ impl<'a> Part<'a> {
                 }
                 share.columns.push(column);
             });
-            share
-        });
-        let all: Vec<Vec<SavedShare>> = self.gathered(&own.collect());
-        let mut all: Vec<_> = all.into_iter().map(Vec::into_iter).collect();
+            names.push(share.columns.iter().map(SavedColumn::emptied).collect::<Vec<_>>());
+            own.extend(Some(share).filter(|share| !share.numbers.is_empty()));
+        }
+        let all: Vec<Vec<SavedShare>> = self.gathered(&own);
+        let mut all: Vec<_> = all.into_iter().map(|shares| shares.into_iter().peekable()).collect();
         // Only the first rank is told.
         let told = if all.is_empty() { 0..0 } else { bodies };
-        for body in told {
-            let shares: Vec<SavedShare> = all.iter_mut().filter_map(Iterator::next).collect();
-            let names: Vec<SavedColumn> = shares[0].columns.iter().map(SavedColumn::emptied).collect();
+        for (body, names) in told.zip(names) {
+            let of_body = all.iter_mut().filter_map(|shares| shares.next_if(|share| share.body == body));
+            let shares: Vec<SavedShare> = of_body.collect();
             let (numbers, columns) = SavedShare::joined(shares).expect("all ranks have the same columns");
             let order = by_number(&numbers);
             for column in if numbers.is_empty() { names } else { columns } {

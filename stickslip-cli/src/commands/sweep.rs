@@ -64,6 +64,13 @@ fn variation(text: &str) -> Result<Variation, String> {
 impl Arguments {
     pub fn execute(self) -> Result<(), Failure> {
         let (plan, folder) = self.plan()?;
+        let folder_of_all = std::path::absolute(&folder).into_diagnostic().map_err(Failure::Run)?;
+        if ranks::count() > 1 && folder_of_all.to_str().is_none() {
+            let found = folder_of_all.display();
+            return Err(Failure::Input(miette!(
+                "found the folder {found}; allowed: a name in UTF-8, where processes share a sweep"
+            )));
+        }
         let varied = sweep::varied(&plan.variations);
         // All scenes are read before anything is run or written: a mistake costs no time.
         let scene = std::path::absolute(plan.scene_file(&folder)).into_diagnostic().map_err(Failure::Run)?;
@@ -109,12 +116,7 @@ impl Arguments {
         let is_considered = |number: &usize| self.only.is_empty() || self.only.contains(number);
         let left = |table: &Sweep| table.unfinished().into_iter().filter(is_considered).collect::<Vec<_>>();
         let wanted = if self.gather { Vec::new() } else { left(&table) };
-        let folder_of_all = std::path::absolute(&folder).into_diagnostic().map_err(Failure::Run)?;
         let limits = [self.jobs, self.threads].map(|limit| limit.map(usize::from));
-        if ranks::count() > 1 && folder_of_all.to_str().is_none() {
-            let found = folder.display();
-            return Err(Failure::Input(miette!("--out: found {found}; allowed: a name in UTF-8")));
-        }
         let text = members[0].1.source.text().to_owned();
         let family = Family { plan, folder: folder_of_all, scene: (scene, text), runs: wanted.len(), limits };
         let share = wanted.len().div_ceil(ranks::count());
@@ -141,6 +143,9 @@ impl Arguments {
                 return Err(Failure::Input(miette!(
                     "{option}: found a scene file; allowed: the folder of a sweep"
                 )));
+            }
+            if !self.scene.exists() {
+                load(&self.scene, &[]).map_err(Failure::input)?;
             }
             self.check()?;
             let folder = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"));
@@ -245,10 +250,14 @@ impl Arguments {
 
 /// Draws the chart, and says what the runs came to and where everything is.
 fn draw_and_tell(crew: &Crew, table: &Sweep) -> Result<(), Failure> {
-    let chart = sweep::chart(table, &[]);
-    let drawn = match draw(&chart, &crew.folder.join("plot.png"), chart.size()) {
+    let (chart, file) = (sweep::chart(table, &[]), crew.folder.join("plot.png"));
+    let drawn = match draw(&chart, &file, chart.size()) {
         Ok(()) => ", plot.png",
-        Err(DrawError::Empty(_)) => "",
+        Err(DrawError::Empty(_)) => {
+            // One that is there shows an earlier sweep.
+            let _ = std::fs::remove_file(&file);
+            ""
+        }
         Err(error) => return Err(error.into()),
     };
     let runs = table.rows.len();

@@ -20,8 +20,8 @@ pub fn state_sum(state: &SavedState) -> String {
     sum.finish(state.time, state.steps)
 }
 
-/// The [`state_sum`] of a simulation of a scene as it is now, for which no more than one column is copied at a time;
-/// none of a simulation that has no state as data.
+/// The [`state_sum`] of a simulation of a scene as it is now, for which no more than one column is copied at a time, or
+/// where ranks share it a part of the particles; none of a simulation that has no state as data.
 pub fn present_state_sum(scene: &Scene, simulation: &dyn Simulation) -> Option<String> {
     let mut sum = StateSum::default();
     let mut names = scene.bodies.iter().enumerate().peekable();
@@ -34,6 +34,7 @@ pub fn present_state_sum(scene: &Scene, simulation: &dyn Simulation) -> Option<S
     if !has_state {
         return None;
     }
+    names.for_each(|(_, body)| sum.add(body.name.as_bytes()));
     Some(sum.finish(simulation.time(), simulation.steps()))
 }
 

@@ -25,6 +25,8 @@ const MOST: usize = 500;
 const FEWEST: usize = 24;
 /// Of more bodies that deform, so many are looked at, spread evenly over the list.
 const MOST_BODIES: usize = 1 << 14;
+/// Bodies whose particles are asked for at a time.
+const TRACED_AT_A_TIME: usize = 1 << 10;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
 const NEAR: f64 = 1.5;
 /// Neighbours in each body; none in a rigid one.
@@ -200,9 +202,11 @@ pub(super) fn particles(of_bodies: &mut [Neighbours], view: &dyn View) -> Vec<Ve
     let wanted: Vec<(usize, Vec<u32>)> =
         chosen.map(|(body, neighbours)| (body, neighbours.wanted())).collect();
     let mut particles = vec![Vec::new(); of_bodies.len()];
-    for ((body, _), mut traced) in wanted.iter().zip(view.trace_each(&wanted)) {
-        of_bodies[*body].order(&mut traced);
-        particles[*body] = traced;
+    for some in wanted.chunks(TRACED_AT_A_TIME) {
+        for ((body, _), mut traced) in some.iter().zip(view.trace_each(some)) {
+            of_bodies[*body].order(&mut traced);
+            particles[*body] = traced;
+        }
     }
     particles
 }

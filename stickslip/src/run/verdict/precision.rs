@@ -40,7 +40,9 @@ impl Check for PrecisionCheck {
         for body in look.free() {
             let state = &look.bodies[body];
             let speed = norm(state.velocity);
-            let farthest = look.particles[body].iter().flat_map(|particle| particle.position);
+            // Of many bodies not all have particles that are looked at.
+            let places = look.particles[body].iter().map(|particle| particle.position);
+            let farthest = places.chain([state.position]).flatten();
             let spacing = epsilon * farthest.map(f64::abs).fold(0.0, f64::max);
             let way = if speed * step < SPACINGS * spacing { speed * since } else { 0.0 };
             let doubtful = self.doubtful[body] + way;
