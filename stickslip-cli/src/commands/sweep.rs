@@ -119,9 +119,7 @@ impl Arguments {
         let limits = [self.jobs, self.threads].map(|limit| limit.map(usize::from));
         let text = members[0].1.source.text().to_owned();
         let family = Family { plan, folder: folder_of_all, scene: (scene, text), runs: wanted.len(), limits };
-        let share = wanted.len().div_ceil(ranks::count());
-        let places = (folder, family.scene.0.clone());
-        let crew = Crew::new(limits, (ranks::neighbours(), share), places, stop_on_interrupt()?);
+        let crew = family.crew(folder, [ranks::count(), ranks::neighbours()], stop_on_interrupt()?);
         self.run(&crew, (&family, &members), &wanted, &mut table)?;
         if self.only.is_empty() {
             draw_and_tell(&crew, &table)?;

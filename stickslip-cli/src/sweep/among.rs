@@ -3,11 +3,12 @@
 
 use super::{Crew, Member, News, Plan, members};
 use serde::{Deserialize, Serialize};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
-use std::thread::sleep;
+use std::thread::{available_parallelism, sleep};
 use std::time::Duration;
 use stickslip::observe::SceneSource;
 use stickslip::ranks::{Ranks, all_of, bytes_of, read};
@@ -29,6 +30,19 @@ pub struct Family {
     pub runs: usize,
     /// Runs at a time and threads of each process, where the user gives them.
     pub limits: [Option<usize>; 2],
+}
+
+impl Family {
+    /// The crew of one of so many processes, of which so many are on the same processors: with as many runs at a time
+    /// and as many threads as the user gives, or as there are processors for it. It writes into `folder`.
+    pub fn crew(&self, folder: PathBuf, [processes, neighbours]: [usize; 2], stop: Arc<AtomicBool>) -> Crew {
+        let [jobs, threads] = self.limits;
+        let processors = available_parallelism().map_or(1, NonZero::get) / neighbours;
+        let threads = threads.unwrap_or(processors).max(1);
+        let share = self.runs.div_ceil(processes).max(1);
+        let jobs = jobs.unwrap_or(threads).clamp(1, share);
+        Crew { jobs, threads: (threads / jobs).max(1), folder, scene: self.scene.0.clone(), stop }
+    }
 }
 
 /// What the first process has the others do.
@@ -110,10 +124,8 @@ pub fn lead(
 #[cfg_attr(not(feature = "mpi"), expect(dead_code, reason = "only processes follow"))]
 pub fn follow(ranks: &dyn Ranks, family: &Family, neighbours: usize) {
     let family_members = members(&family.plan.variations);
-    let share = family.runs.div_ceil(ranks.count());
-    let stop = Arc::new(AtomicBool::new(false));
     let (path, text) = &family.scene;
-    let crew = Crew::new(family.limits, (neighbours, share), (family.folder.clone(), path.clone()), stop);
+    let crew = family.crew(family.folder.clone(), [ranks.count(), neighbours], Arc::default());
     ranks.tell_first(&bytes_of(&crew.jobs));
     let scene_of = |number: usize| {
         let member: &Member = &family_members[number];

@@ -20,12 +20,10 @@ pub use table::table;
 use crate::illustration::illustrate;
 use crate::jobs;
 use serde::{Deserialize, Serialize};
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::available_parallelism;
 use std::time::Duration;
 use stickslip::observe::{ArrivalRow, ContactRow, Results, SceneSource, Status};
 use stickslip::ranks::Ranks;
@@ -83,20 +81,6 @@ pub fn finished(
 }
 
 impl Crew {
-    /// For a family of which a process is to make about so many runs, and so many processes on the same processors: as
-    /// many at a time and as many threads as `limits` says, or as there are processors for it.
-    pub fn new(
-        [jobs, threads]: [Option<usize>; 2],
-        (neighbours, runs): (usize, usize),
-        (folder, scene): (PathBuf, PathBuf),
-        stop: Arc<AtomicBool>,
-    ) -> Self {
-        let processors = available_parallelism().map_or(1, NonZero::get) / neighbours;
-        let threads = threads.unwrap_or(processors).max(1);
-        let jobs = jobs.unwrap_or(threads).clamp(1, runs.max(1));
-        Crew { jobs, threads: (threads / jobs).max(1), folder, scene, stop }
-    }
-
     /// Runs those of the scenes that are `wanted`, by their numbers, side by side, each in its folder, and tells
     /// `listen` what happens, on this thread. One that was killed or stopped goes on from its newest checkpoint. Runs
     /// that have not begun when the user stops are not begun. Other processes run their part where there are any.
