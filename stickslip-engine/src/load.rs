@@ -24,8 +24,13 @@ pub struct LoadPoints {
     pub action: Action,
     /// Index of its body.
     pub body: usize,
-    /// The points; none of a temperature.
+    /// The points by their numbers, of which each of several ranks has those that its particles carry; none of a
+    /// temperature.
     pub points: Vec<PartPoint>,
+    /// How many there are on all ranks.
+    pub count: usize,
+    /// Where the first of all was at the start [m].
+    first: [f64; 3],
     /// Of a temperature, which particles of the body it heats, by number.
     pub heats: Vec<bool>,
     /// Area of all of them, or volume [m^2 or m^3].
@@ -125,7 +130,8 @@ pub struct CarriedPoint<'a, T, const D: usize> {
 }
 
 impl LoadPoints {
-    /// A load of a scene with its points, on a body of so many particles.
+    /// A load of a scene with its points, on a body of so many particles; or with those alone that particles with some
+    /// numbers carry, which ascend.
     ///
     /// A rigid support has springs of, per area,
     ///
@@ -135,9 +141,22 @@ impl LoadPoints {
     /// which give way as much as a layer of the body of thickness M/k does. They act half as deep inside the surface,
     /// which takes as much from how far the body gives way: N . K^-1 . N of its stiffness K falls by 2 d/E as N moves
     /// inward by d.
-    pub fn new(scene: &Scene, load: &Load, particles: usize) -> Self {
-        let mut points = part::points(scene, load.body, &load.part);
-        let measure = points.iter().map(|point| point.measure).sum::<f64>();
+    pub fn new(scene: &Scene, load: &Load, particles: usize, here: Option<&[u32]>) -> Self {
+        let heated = matches!(load.action, Action::Temperature(_));
+        let mut heats = vec![false; if heated { particles } else { 0 }];
+        let (mut points, mut count, mut first, mut measure) = (Vec::new(), 0, None, 0.0);
+        part::visit(scene, load.body, &load.part, &mut |point| {
+            measure += point.measure;
+            if heated {
+                heats[point.particle as usize] = true;
+                return;
+            }
+            count += 1;
+            first.get_or_insert(point.position);
+            if here.is_none_or(|here| here.binary_search(&point.particle).is_ok()) {
+                points.push(point);
+            }
+        });
         let (mut stiffness, mut dashpot, mut inset) = (0.0, [0.0; 2], 0.0);
         if let Action::Support(support) = &load.action {
             if support.is_rigid() {
@@ -164,15 +183,12 @@ impl LoadPoints {
         for point in &mut points {
             (0..3).for_each(|i| point.arm[i] -= inset * point.normal[i]);
         }
-        let mut heats = Vec::new();
-        if matches!(load.action, Action::Temperature(_)) {
-            heats.resize(particles, false);
-            points.drain(..).for_each(|point| heats[point.particle] = true);
-        }
         LoadPoints {
             action: load.action.clone(),
             body: load.body,
             points,
+            count,
+            first: first.unwrap_or_default(),
             heats,
             measure,
             stiffness,
@@ -264,7 +280,7 @@ impl LoadPoints {
     /// Whether what it prescribes stays as it is: whether nothing of it changes within the step from `time` on, nor
     /// until `end` [s].
     pub fn is_still(&self, time: f64, dt: f64, end: f64) -> bool {
-        let place = self.points.first().map_or([0.0; 3], |point| point.position);
+        let place = self.first;
         let at = |value: &Expression, time: f64| {
             value.at_moment(&Moment { time, place, start: place, ..Moment::default() })
         };

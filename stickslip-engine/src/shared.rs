@@ -11,12 +11,12 @@ use crate::contact::ContactSums;
 use crate::door::{
     BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
     NotTakenUp, ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError,
-    SavedColumn, SavedShare, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState,
-    WriteError, WrittenValues,
+    SavedBody, SavedColumn, SavedShare, SavedState, Simulation, StepError, StepLimit, TracedParticle, View,
+    WallState, WriteError, WrittenValues,
 };
 use crate::lanes::Processor;
 use crate::particles::by_number;
-use crate::ranks::{Ranks, Threads, all_of, bytes_of, combined, read};
+use crate::ranks::{Ranks, Threads, added, all_of, bytes_of, combined, read};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
 use crate::step::{self, Find, ParticleLoop, Shareable};
@@ -24,7 +24,6 @@ use rayon::ThreadPoolBuilder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_bytes::ByteBuf;
-use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -47,11 +46,11 @@ pub type Finding = fn(&dyn Ranks, &[u8], &mut dyn FnMut(Vec<SavedShare>)) -> Res
 /// # Errors
 /// What [`crate::check::problems`] finds, and what ranks cannot share yet: the others find the same.
 pub fn lead(
-    scene: &Scene,
+    scene: Arc<Scene>,
     path: ParticleLoop,
     (ranks, program): (Arc<dyn Ranks>, Program),
 ) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(Box::new(Leader(Part::new(Cow::Owned(scene.clone()), path, (ranks, program))?)))
+    Ok(Box::new(Leader(Part::new(scene, path, (ranks, program))?)))
 }
 
 /// Does what the first rank asks of the simulation of this scene, until it drops it.
@@ -59,11 +58,11 @@ pub fn lead(
 /// # Errors
 /// What [`lead`] finds.
 pub fn follow(
-    scene: &Scene,
+    scene: Arc<Scene>,
     path: ParticleLoop,
     (ranks, program): (Arc<dyn Ranks>, Program),
 ) -> Result<(), Problem> {
-    let mut part = Part::new(Cow::Borrowed(scene), path, (ranks, program))?;
+    let mut part = Part::new(scene, path, (ranks, program))?;
     while part.obey() {}
     Ok(())
 }
@@ -76,6 +75,7 @@ pub fn among_threads<X: Send>(
     act: impl FnOnce(Result<Box<dyn Simulation>, Problem>) -> X + Send,
 ) -> X {
     let path = ParticleLoop::Lanes(Processor::best());
+    let scene = Arc::new(scene.clone());
     // A pool for each: who waits for another rank keeps a thread of its pool.
     let pool = || ThreadPoolBuilder::new().num_threads(1).build().expect("the system gives a thread");
     std::thread::scope(|scope| {
@@ -83,6 +83,7 @@ pub fn among_threads<X: Send>(
         let first = ranks.next().expect("there is one");
         for other in ranks {
             // What is wrong with the scene, the first one says.
+            let scene = scene.clone();
             scope.spawn(move || pool().install(|| follow(scene, path, (Arc::new(other), program))));
         }
         pool().install(|| act(lead(scene, path, (Arc::new(first), program))))
@@ -125,6 +126,8 @@ enum Call {
     Ask(Vec<u8>),
     /// A state without particles follows.
     RestoreOnRanks(Vec<u8>),
+    /// A state without particles follows, which may be that of a snapshot.
+    BeginOnRanks(Vec<u8>, StartVelocities, bool),
     /// A state without particles follows, then particles, unless the first one could not take it up.
     BeginAnew,
     End,
@@ -132,25 +135,25 @@ enum Call {
 
 /// One rank's part of a simulation. All ranks make the same calls of it in the same order, and the first gets what they
 /// give together.
-struct Part<'a> {
+struct Part {
     own: Box<dyn Shareable>,
-    scene: Cow<'a, Scene>,
+    scene: Arc<Scene>,
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
     program: Program,
 }
 
 /// The first rank's.
-struct Leader(Part<'static>);
+struct Leader(Part);
 
 /// [`bytes_of`] where fields may be left out: with their names.
 fn named_bytes_of(said: &impl Serialize) -> Vec<u8> {
     rmp_serde::to_vec_named(said).expect("memory takes what is written")
 }
 
-impl<'a> Part<'a> {
+impl Part {
     fn new(
-        scene: Cow<'a, Scene>,
+        scene: Arc<Scene>,
         path: ParticleLoop,
         (ranks, program): (Arc<dyn Ranks>, Program),
     ) -> Result<Self, Problem> {
@@ -194,6 +197,11 @@ impl<'a> Part<'a> {
             Call::RestoreOnRanks(asked) => {
                 let rest = read(&self.ranks.hear_first(&[]));
                 drop(self.restore_on_ranks(&rest, &asked));
+            }
+            Call::BeginOnRanks(asked, velocities, of_snapshot) => {
+                let rest = read::<SavedState>(&self.ranks.hear_first(&[]));
+                let rest = SavedState { of_snapshot, ..rest };
+                drop(self.begin_on_ranks((&rest, velocities), &asked, &mut |_, _| ()));
             }
             Call::BeginAnew => drop(self.begin_anew(None)),
             Call::End => return false,
@@ -304,88 +312,10 @@ impl<'a> Part<'a> {
         Some(SavedState { contact_sums, ..own })
     }
 
-    /// As [`Simulation::visit_bytes`]: of several small bodies at a time, and of a large one by itself.
     fn visit_bytes(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
-        let counts = self.own.counts_of_all();
-        let (mut first, mut has_state) = (bodies.start, true);
-        while first < bodies.end {
-            let mut sum = 0;
-            let fit = (first..bodies.end).take_while(|&body| {
-                sum += counts[body] + OF_A_BODY;
-                sum <= BYTES_OF_AT_A_TIME
-            });
-            let several = first..first + fit.count();
-            has_state &= match several.is_empty() {
-                true => self.visit_bytes_of_one(first, &mut |bytes| look(first, bytes)),
-                false => self.visit_bytes_of_several(several.clone(), look),
-            };
-            first = several.end.max(first + 1);
-        }
-        has_state
-    }
-
-    /// The same of bodies that find room in one place.
-    fn visit_bytes_of_several(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
-        let (mut has_state, mut own, mut names) = (true, Vec::new(), Vec::new());
-        for body in bodies.clone() {
-            let mut share = SavedShare { body, numbers: Vec::new(), columns: Vec::new() };
-            has_state &= self.own.save_columns(body, &mut |numbers, column| {
-                if share.columns.is_empty() {
-                    share.numbers = numbers.to_vec();
-                }
-                share.columns.push(column);
-            });
-            names.push(share.columns.iter().map(SavedColumn::emptied).collect::<Vec<_>>());
-            own.extend(Some(share).filter(|share| !share.numbers.is_empty()));
-        }
-        let all: Vec<Vec<SavedShare>> = self.gathered(&own);
-        let mut all: Vec<_> = all.into_iter().map(|shares| shares.into_iter().peekable()).collect();
-        // Only the first rank is told.
-        let told = if all.is_empty() { 0..0 } else { bodies };
-        for (body, names) in told.zip(names) {
-            let of_body = all.iter_mut().filter_map(|shares| shares.next_if(|share| share.body == body));
-            let shares: Vec<SavedShare> = of_body.collect();
-            let (numbers, columns) = SavedShare::joined(shares).expect("all ranks have the same columns");
-            let order = by_number(&numbers);
-            for column in if numbers.is_empty() { names } else { columns } {
-                look(body, column.name.as_bytes());
-                column.sorted_lines(&order).for_each(|line| look(body, &line));
-            }
-        }
-        has_state
-    }
-
-    /// The same of one body, of particles with some numbers at a time.
-    fn visit_bytes_of_one(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
-        let mut order: Option<(Vec<u32>, Vec<u32>, u32)> = None;
-        self.own.save_columns(body, &mut |numbers, column| {
-            let (order, sorted, end) = order.get_or_insert_with(|| {
-                let order = by_number(numbers);
-                let sorted: Vec<u32> = order.iter().map(|&place| numbers[place as usize]).collect();
-                let end = sorted.last().map_or(0, |last| last + 1);
-                (order, sorted, combined(&*self.ranks, &end, u32::max))
-            });
-            let (width, mut lines) = (column.width, column.sorted_lines(order));
-            look(column.name.as_bytes());
-            // As many entries on all ranks, also where one has no particles.
-            let own = column.bytes.len().checked_div(width * sorted.len()).unwrap_or_default();
-            for _ in 0..combined(&*self.ranks, &own, usize::max) {
-                let line = lines.next().unwrap_or_default();
-                for first in (0..*end).step_by(BYTES_OF_AT_A_TIME) {
-                    let place = |number: u32| sorted.partition_point(|&other| other < number);
-                    let some = place(first)..place(first.saturating_add(BYTES_OF_AT_A_TIME as u32));
-                    let bytes = &line[some.start * width..some.end * width];
-                    let own = (sorted[some].to_vec(), ByteBuf::from(bytes));
-                    let all = self.gathered(&own);
-                    let mut rows: Vec<(u32, &[u8])> = all
-                        .iter()
-                        .flat_map(|(numbers, bytes)| numbers.iter().copied().zip(bytes.chunks_exact(width)))
-                        .collect();
-                    rows.sort_unstable_by_key(|(number, _)| *number);
-                    look(&rows.into_iter().flat_map(|(_, bytes)| bytes).copied().collect::<Vec<u8>>());
-                }
-            }
-        })
+        let columns: ColumnsOf = &|body, take| self.own.save_columns(body, take);
+        SharedColumns { ranks: &*self.ranks, counts: self.own.counts_of_all(), columns }
+            .visit_bytes(bodies, look)
     }
 
     /// What the program of each rank says of what all are asked, by rank, for the first.
@@ -397,6 +327,18 @@ impl<'a> Part<'a> {
     fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Result<(), NotTakenUp> {
         let (ranks, find) = (self.ranks.clone(), self.program.find);
         self.take_up(rest, &mut |show| find(&*ranks, asked, show))
+    }
+
+    fn begin_on_ranks(
+        &mut self,
+        from: (&SavedState, StartVelocities),
+        asked: &[u8],
+        look: &mut dyn FnMut(usize, &[u8]),
+    ) -> Result<(), NotTakenUp> {
+        let (ranks, find) = (self.ranks.clone(), self.program.find);
+        let find: Find = &mut |show| find(&*ranks, asked, show);
+        let look = &mut |bodies: &mut [SavedBody]| visit_found(&*ranks, bodies, look);
+        self.own.begin_share((&self.scene, ranks.clone()), from, (find, look))
     }
 
     /// Takes up a state, of which `find` gives this rank some particles. What it has now goes before they come.
@@ -427,6 +369,130 @@ impl<'a> Part<'a> {
         taken.map_err(|problem| match problem {
             NotTakenUp::Unfound(problem) => RestoreError::new(problem),
             NotTakenUp::Other(problem) => problem,
+        })
+    }
+}
+
+/// Shows a body's columns one by one with the numbers of its particles, and says whether it has a state as data.
+type ColumnsOf<'a> = &'a dyn Fn(usize, &mut dyn FnMut(&[u32], SavedColumn)) -> bool;
+
+/// Columns of the particles of bodies, of which all ranks have some.
+struct SharedColumns<'a> {
+    ranks: &'a dyn Ranks,
+    /// How many particles each body has on all ranks.
+    counts: Vec<usize>,
+    /// Those of this rank, of a large body all even if it has no particles.
+    columns: ColumnsOf<'a>,
+}
+
+/// Shows the first rank the bytes of the particles that all have found of bodies of another run.
+fn visit_found(ranks: &dyn Ranks, bodies: &mut [SavedBody], look: &mut dyn FnMut(usize, &[u8])) {
+    let counts: Vec<usize> = bodies.iter().map(|body| body.numbers.len()).collect();
+    let counts = combined(ranks, &counts, added);
+    for (body, _) in
+        bodies.iter_mut().zip(&counts).filter(|(_, count)| **count + OF_A_BODY > BYTES_OF_AT_A_TIME)
+    {
+        let own: Vec<SavedColumn> = body.columns.iter().map(SavedColumn::emptied).collect();
+        let names = combined(ranks, &own, |one, other| if one.is_empty() { other } else { one });
+        if body.numbers.is_empty() {
+            body.columns = names;
+        }
+    }
+    let bodies = &*bodies;
+    let columns: ColumnsOf = &|body, take| {
+        let SavedBody { numbers, columns, .. } = &bodies[body];
+        columns.iter().for_each(|column| take(numbers, column.clone()));
+        true
+    };
+    SharedColumns { ranks, counts, columns }.visit_bytes(0..bodies.len(), look);
+}
+
+impl SharedColumns<'_> {
+    /// What each rank says, by rank, for the first.
+    fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
+        all_of(self.ranks.tell_first(&bytes_of(said)))
+    }
+
+    /// As [`Simulation::visit_bytes`]: of several small bodies at a time, and of a large one by itself.
+    fn visit_bytes(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
+        let (mut first, mut has_state) = (bodies.start, true);
+        while first < bodies.end {
+            let mut sum = 0;
+            let fit = (first..bodies.end).take_while(|&body| {
+                sum += self.counts[body] + OF_A_BODY;
+                sum <= BYTES_OF_AT_A_TIME
+            });
+            let several = first..first + fit.count();
+            has_state &= match several.is_empty() {
+                true => self.visit_bytes_of_one(first, &mut |bytes| look(first, bytes)),
+                false => self.visit_bytes_of_several(several.clone(), look),
+            };
+            first = several.end.max(first + 1);
+        }
+        has_state
+    }
+
+    /// The same of bodies that find room in one place.
+    fn visit_bytes_of_several(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
+        let (mut has_state, mut own, mut names) = (true, Vec::new(), Vec::new());
+        for body in bodies.clone() {
+            let mut share = SavedShare { body, numbers: Vec::new(), columns: Vec::new() };
+            has_state &= (self.columns)(body, &mut |numbers, column| {
+                if share.columns.is_empty() {
+                    share.numbers = numbers.to_vec();
+                }
+                share.columns.push(column);
+            });
+            names.push(share.columns.iter().map(SavedColumn::emptied).collect::<Vec<_>>());
+            own.extend(Some(share).filter(|share| !share.numbers.is_empty()));
+        }
+        let all: Vec<Vec<SavedShare>> = self.gathered(&own);
+        let mut all: Vec<_> = all.into_iter().map(|shares| shares.into_iter().peekable()).collect();
+        // Only the first rank is told.
+        let told = if all.is_empty() { 0..0 } else { bodies };
+        for (body, names) in told.zip(names) {
+            let of_body = all.iter_mut().filter_map(|shares| shares.next_if(|share| share.body == body));
+            let shares: Vec<SavedShare> = of_body.collect();
+            let (numbers, columns) = SavedShare::joined(shares).expect("all ranks have the same columns");
+            let order = by_number(&numbers);
+            for column in if numbers.is_empty() { names } else { columns } {
+                look(body, column.name.as_bytes());
+                column.sorted_lines(&order).for_each(|line| look(body, &line));
+            }
+        }
+        has_state
+    }
+
+    /// The same of one body, of particles with some numbers at a time.
+    fn visit_bytes_of_one(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
+        let mut order: Option<(Vec<u32>, Vec<u32>, u32)> = None;
+        (self.columns)(body, &mut |numbers, column| {
+            let (order, sorted, end) = order.get_or_insert_with(|| {
+                let order = by_number(numbers);
+                let sorted: Vec<u32> = order.iter().map(|&place| numbers[place as usize]).collect();
+                let end = sorted.last().map_or(0, |last| last + 1);
+                (order, sorted, combined(self.ranks, &end, u32::max))
+            });
+            let (width, mut lines) = (column.width, column.sorted_lines(order));
+            look(column.name.as_bytes());
+            // As many entries on all ranks, also where one has no particles.
+            let own = column.bytes.len().checked_div(width * sorted.len()).unwrap_or_default();
+            for _ in 0..combined(self.ranks, &own, usize::max) {
+                let line = lines.next().unwrap_or_default();
+                for first in (0..*end).step_by(BYTES_OF_AT_A_TIME) {
+                    let place = |number: u32| sorted.partition_point(|&other| other < number);
+                    let some = place(first)..place(first.saturating_add(BYTES_OF_AT_A_TIME as u32));
+                    let bytes = &line[some.start * width..some.end * width];
+                    let own = (sorted[some].to_vec(), ByteBuf::from(bytes));
+                    let all = self.gathered(&own);
+                    let mut rows: Vec<(u32, &[u8])> = all
+                        .iter()
+                        .flat_map(|(numbers, bytes)| numbers.iter().copied().zip(bytes.chunks_exact(width)))
+                        .collect();
+                    rows.sort_unstable_by_key(|(number, _)| *number);
+                    look(&rows.into_iter().flat_map(|(_, bytes)| bytes).copied().collect::<Vec<u8>>());
+                }
+            }
         })
     }
 }
@@ -463,12 +529,12 @@ fn deal(ranks: &dyn Ranks, whole: Option<Box<dyn Simulation>>, show: &mut dyn Fn
 
 impl Leader {
     /// Tells the others what all are to do.
-    fn tell(&self, call: &Call) -> &Part<'static> {
+    fn tell(&self, call: &Call) -> &Part {
         self.0.ranks.hear_first(&bytes_of(call));
         &self.0
     }
 
-    fn tell_mut(&mut self, call: &Call) -> &mut Part<'static> {
+    fn tell_mut(&mut self, call: &Call) -> &mut Part {
         self.tell(call);
         &mut self.0
     }
@@ -649,6 +715,17 @@ impl Simulation for Leader {
         self.tell_mut(&Call::BeginAnew).begin_anew(Some(begin))
     }
 
+    fn begin_on_ranks(
+        &mut self,
+        (rest, velocities): (&SavedState, StartVelocities),
+        asked: &[u8],
+        look: &mut dyn FnMut(usize, &[u8]),
+    ) -> Option<Result<(), NotTakenUp>> {
+        let part = self.tell_mut(&Call::BeginOnRanks(asked.to_vec(), velocities, rest.of_snapshot));
+        part.ranks.hear_first(&named_bytes_of(rest));
+        Some(part.begin_on_ranks((rest, velocities), asked, look))
+    }
+
     fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Option<Result<(), NotTakenUp>> {
         let part = self.tell_mut(&Call::RestoreOnRanks(asked.to_vec()));
         part.ranks.hear_first(&named_bytes_of(rest));
@@ -705,6 +782,48 @@ rigid = {}
         for count in [2, 3] {
             let several = among_threads(&scene, (count, PROGRAM), |first| shown(&*first.unwrap()));
             assert!(one == several, "{count} ranks");
+        }
+    }
+
+    /// Particles of a state that ranks have found, whichever each: of the large body the last rank has none.
+    #[test]
+    fn ranks_show_the_bytes_of_what_they_found() {
+        let scene = parse("scene.toml", SCENE, &[]).unwrap().scene;
+        let one = step::build(&scene).unwrap();
+        let mut expected: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+        let mut look = |body, bytes: &[u8]| expected.entry(body).or_default().extend(bytes);
+        one.visit_bytes(0..scene.bodies.len(), &mut look);
+        let state = one.save().unwrap();
+        for count in [1, 2, 3] {
+            let part = |rank: usize| {
+                let of_body = |body: &SavedBody| {
+                    let all = body.numbers.len();
+                    let parts = if all > BYTES_OF_AT_A_TIME { (count - 1).max(1) } else { count };
+                    let end = |rank: usize| rank.min(parts) * all / parts;
+                    let mut own = state.without_particles().bodies.remove(0);
+                    let share = body.share(0, end(rank)..end(rank + 1));
+                    if all == 0 {
+                        own.columns = share.columns;
+                    } else if !share.numbers.is_empty() {
+                        assert!(own.fill(vec![share]));
+                    }
+                    own
+                };
+                state.bodies.iter().map(of_body).collect::<Vec<_>>()
+            };
+            let shown = |ranks: &Threads| {
+                let mut all: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+                let mut look = |body, bytes: &[u8]| all.entry(body).or_default().extend(bytes);
+                visit_found(ranks, &mut part(ranks.rank()), &mut look);
+                all
+            };
+            let shown = &shown;
+            let all: Vec<_> = std::thread::scope(|scope| {
+                let ranks = Threads::start(count).into_iter();
+                let all: Vec<_> = ranks.map(|ranks| scope.spawn(move || shown(&ranks))).collect();
+                all.into_iter().map(|one| one.join().unwrap()).collect()
+            });
+            assert!(all[0] == expected, "{count} ranks");
         }
     }
 }

@@ -14,12 +14,35 @@ pub struct InitialStress {
     pub stretch: Symmetric<f64>,
 }
 
-/// Of each particle of a body, by number; none where the scene gives it no stress.
+/// Particles that are looked at together.
+const AT_A_TIME: usize = 1 << 16;
+
+/// Looks whether all particles of a body can begin with the stress that the scene gives it.
 ///
 /// # Errors
 /// A stress of a rigid body, out of a plane scene, that is no number, or that its material cannot have before anything
 /// moves.
-pub fn of_body(scene: &Scene, number: usize) -> Result<Vec<InitialStress>, Problem> {
+pub fn check(scene: &Scene, number: usize) -> Result<(), Problem> {
+    let body = &scene.bodies[number];
+    let Some(formulas) = &body.stress else { return Ok(()) };
+    let all = sites(&body.shape, &scene.lattice(body), body.particles);
+    let mut places = all.into_iter().flatten().map(|site| site.position);
+    let alike = formulas.iter().all(|formula| formula.constant().is_some());
+    loop {
+        let some: Vec<[f64; 3]> = places.by_ref().take(if alike { 1 } else { AT_A_TIME }).collect();
+        let is_last = alike || some.len() < AT_A_TIME;
+        at(scene, number, some)?;
+        if is_last {
+            return Ok(());
+        }
+    }
+}
+
+/// With what particles of a body begin at these places [m]; nothing where the scene gives it no stress.
+///
+/// # Errors
+/// What [`check`] finds.
+pub fn at(scene: &Scene, number: usize, places: Vec<[f64; 3]>) -> Result<Vec<InitialStress>, Problem> {
     let body = &scene.bodies[number];
     let Some(formulas) = &body.stress else { return Ok(Vec::new()) };
     if body.is_rigid() {
@@ -33,8 +56,6 @@ pub fn of_body(scene: &Scene, number: usize) -> Result<Vec<InitialStress>, Probl
     let law = scene.materials[body.material].law;
     // A law that its cells do not suit is found elsewhere.
     let law = law.on_grid(scene.discretization.cell).unwrap_or(law);
-    let places: Vec<[f64; 3]> = sites(&body.shape, &scene.lattice(body), body.particles)
-        .map_or(Vec::new(), |sites| sites.map(|site| site.position).collect());
     let at = |place: [f64; 3]| {
         let moment = Moment { place, start: place, ..Moment::default() };
         Symmetric(std::array::from_fn(|k| formulas[k].at_moment(&moment)))

@@ -1,8 +1,9 @@
 //! Parts of bodies on which loads and springs act, as points that particles carry along.
 
 use crate::geometry::{Arrangement, ParticleSite, Shape, sites};
-use crate::scene::{Extent, Face, Part, Scene};
+use crate::scene::{Body, Extent, Face, Part, Scene};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use serde::{Deserialize, Serialize};
 
 /// A point of a part, and the particle that carries it.
 ///
@@ -10,10 +11,12 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 /// x_s = x_p + F_p (X_s - X_p)          n da = J F_p^-T N dA          (Nanson)
 /// ```
 /// Where a lattice of particles has stairs, points are on the stairs: they lie in their particles' cubes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PartPoint {
+    /// Its own number among all points of the part.
+    pub number: u32,
     /// Number of the particle in its body, the nearest one.
-    pub particle: usize,
+    pub particle: u32,
     /// Where the point is at the start, X_s [m].
     pub position: [f64; 3],
     /// How far it is from there where the run begins, if its body begins as another run left it [m].
@@ -77,7 +80,8 @@ pub struct PartPoints {
 impl PartPoints {
     /// Those of a part of a body of the scene.
     pub fn new(scene: &Scene, body: usize, part: &Part) -> Self {
-        let points = points(scene, body, part);
+        let mut points = Vec::new();
+        visit(scene, body, part, &mut |point| points.push(point));
         let measure = points.iter().map(|point| point.measure).sum::<f64>();
         let mean =
             |i: usize| points.iter().map(|point| point.measure / measure * point.position[i]).sum::<f64>();
@@ -86,18 +90,21 @@ impl PartPoints {
     }
 }
 
-/// The points of a part of a body; none where it has nothing there.
-pub fn points(scene: &Scene, body: usize, part: &Part) -> Vec<PartPoint> {
+/// Shows the points of a part of a body one after the other, by their numbers; none where it has nothing there.
+pub fn visit(scene: &Scene, body: usize, part: &Part, look: &mut dyn FnMut(PartPoint)) {
     let body = &scene.bodies[body];
-    let lattice = scene.lattice(body);
-    let dimension = lattice.dimension;
-    let Some(particles) = sites(&body.shape, &lattice, body.particles) else { return Vec::new() };
-    let inside =
-        |point: [f64; 3]| part.within.as_ref().is_none_or(|shape: &Shape| shape.contains(point, dimension));
+    let Some(particles) = sites(&body.shape, &scene.lattice(body), body.particles) else { return };
+    let mut number = 0;
+    let mut show = |point: PartPoint| {
+        look(PartPoint { number, ..point });
+        number += 1;
+    };
     if part.on == Extent::Volume {
+        let lattice = scene.lattice(body);
         let point = |(particle, site): (usize, ParticleSite)| PartPoint {
+            number: 0,
             moved: [0.0; 3],
-            particle,
+            particle: particle as u32,
             position: site.position,
             arm: [0.0; 3],
             normal: [0.0; 3],
@@ -105,8 +112,21 @@ pub fn points(scene: &Scene, body: usize, part: &Part) -> Vec<PartPoint> {
         };
         let within =
             |site: [f64; 3]| part.within.as_ref().is_none_or(|shape| lattice.contains_site(shape, site));
-        return particles.enumerate().map(point).filter(|point| within(point.position)).collect();
+        particles.enumerate().map(point).filter(|point| within(point.position)).for_each(show);
+    } else {
+        on_surface((scene, body, part), particles).into_iter().for_each(&mut show);
     }
+}
+
+/// The points of a part of a surface, of a body that these particles fill.
+fn on_surface(
+    (scene, body, part): (&Scene, &Body, &Part),
+    particles: impl Iterator<Item = ParticleSite>,
+) -> Vec<PartPoint> {
+    let lattice = scene.lattice(body);
+    let dimension = lattice.dimension;
+    let inside =
+        |point: [f64; 3]| part.within.as_ref().is_none_or(|shape: &Shape| shape.contains(point, dimension));
     let Some(bounds) = body.shape.bounds(dimension) else { return Vec::new() };
     let leaves = particles.enumerate().map(|(i, site)| Leaf(i, site)).collect();
     let tree = RTree::bulk_load(leaves);
@@ -124,7 +144,8 @@ pub fn points(scene: &Scene, body: usize, part: &Part) -> Vec<PartPoint> {
             let arm = std::array::from_fn(|k| (point.position[k] - site.position[k]).clamp(-reach, reach));
             let position = std::array::from_fn(|k| site.position[k] + arm[k]);
             Some(PartPoint {
-                particle: *particle,
+                number: 0,
+                particle: *particle as u32,
                 position,
                 moved: [0.0; 3],
                 arm,

@@ -395,13 +395,21 @@ fn among<X: Send>(scene: &Scene, count: usize, act: impl FnOnce(&mut dyn Simulat
     among_threads(scene, (count, PROGRAM), |simulation| act(&mut *simulation.expect("ranks can share it")))
 }
 
-fn start(scene: &Scene, count: usize, out: &Path) -> Summary {
+fn try_start(scene: &Scene, count: usize, out: &Path) -> Result<Summary, RunError> {
     let go = |simulation: &mut dyn Simulation| run(scene, simulation, &options(out), &mut |_| {});
-    let ended = match count {
+    match count {
         1 => go(&mut *stickslip::step::build(scene).unwrap()),
         count => among(scene, count, go),
-    };
-    ended.unwrap_or_else(|error| panic!("{error}"))
+    }
+}
+
+fn start(scene: &Scene, count: usize, out: &Path) -> Summary {
+    try_start(scene, count, out).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene of a text that begins from a run.
+fn begun(folder: &Path, text: &str, (from, more): (&Path, &str)) -> Scene {
+    scene(folder, &format!("{text}\n[start]\nfrom = {:?}\n{more}", from.to_str().unwrap()))
 }
 
 #[test]
@@ -558,31 +566,97 @@ fn ranks_refuse_what_one_refuses() {
     }
 }
 
-/// From a checkpoint, and from a snapshot.
+/// From a checkpoint, and from a snapshot; with free rigid bodies; with loads, supports, a spring and a stress at the
+/// start; and with particles that are gone, a body that is left out, and a new one.
 #[test]
 fn ranks_begin_from_another_run() {
-    let folder = tempfile::tempdir().unwrap();
-    let packing = folder.path().join("packing");
-    start(&scene(folder.path(), PLANE), 2, &packing);
-    for more in ["", "at = 0.155\n"] {
-        let text = PLANE.replace("velocity = [0, -2]\nspin = 3\n", "");
-        let text = format!("{text}\n[start]\nfrom = {:?}\n{more}", packing.to_str().unwrap());
-        let begun = scene(folder.path(), &text);
-        let [alone, shared] = [1, 3].map(|count| {
-            let out = folder.path().join(format!("{count} {}", more.len()));
-            start(&begun, count, &out);
-            out
-        });
-        assert_same_run(&alone, &shared);
+    let mechanism = [PLANE, MECHANISM].concat();
+    let at_rest = "velocities = \"zero\"\n";
+    let snapshot = "at = 0.155\n";
+    let cases = [
+        ("plane", PLANE, &["", snapshot][..]),
+        ("mechanism", &mechanism, &[at_rest, snapshot]),
+        ("loaded", LOADED, &["", at_rest]),
+        ("losing", LOSING, &[""]),
+    ];
+    for (name, text, starts) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        let before = folder.path().join("before");
+        start(&scene(folder.path(), text), 2, &before);
+        let text = text.replace("velocity = [0, -2]\nspin = 3\n", "").replace("\"gone\"", "\"new\"");
+        for more in starts {
+            let scene = begun(folder.path(), &text, (&before, more));
+            let runs = [1, 2, 3].map(|count| {
+                let out = folder.path().join(format!("{count} {}", more.len()));
+                start(&scene, count, &out);
+                let record = Results::open(&out).unwrap().manifest().begun_from.clone().unwrap();
+                (out, record)
+            });
+            let [(alone, record), shared @ ..] = &runs;
+            for (out, found) in shared {
+                assert_same_run(alone, out);
+                assert_eq!((found.time, &found.state_sum), (record.time, &record.state_sum), "{name} {more}");
+            }
+        }
     }
 }
 
-/// A particle that leaves the domain: steps are taken again from memory, then the run ends with what one rank says.
+/// What ranks say of a run from which a scene cannot begin is what one says.
+#[test]
+fn ranks_do_not_begin_from_what_one_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let [packing, losing, out] = ["packing", "losing", "out"].map(|name| folder.path().join(name));
+    start(&scene(folder.path(), PLANE), 1, &packing);
+    start(&scene(folder.path(), LOSING), 1, &losing);
+    let plunger = "[[bodies]]\nname = \"plunger\"\nmaterial = \"slow\"\nrigid = {}\n\
+                   shape.box = { min = [0, 0.3], max = [0.5, 1.0] }\n[[contact]]";
+    let flows = "von_mises = { young_modulus = 2e5, poisson_ratio = 0.3, yield_stress = 2e3 }";
+    let smaller = PLANE.replace("1.52], radius = 0.5", "1.52], radius = 0.4");
+    let within = PLANE.replacen("[[contact]]", plunger, 1);
+    let elastic = PLANE.replace(flows, "neo_hookean = { young_modulus = 2e5, poisson_ratio = 0.3 }");
+    let elsewhere = PLANE.replace("center = [0.2, 1.52]", "center = [0.27, 1.52]");
+    let others = PLANE.replace("\"paddle\"", "\"oar\"").replace("\"floor\"", "\"ground\"");
+    let others = others.replace("\"low\"", "\"lower\"").replace("\"high\"", "\"higher\"");
+    for (text, from, more, why) in [
+        (&smaller[..], &packing, "", "its shape or its filling is another"),
+        (&smaller, &packing, "at = 0.155\n", "another shape or another filling"),
+        (&within, &packing, "", "`plunger` overlaps `low` in"),
+        (&within, &packing, "at = 0.155\n", "`plunger` overlaps `low` in"),
+        (&elastic, &packing, "", "spring back"),
+        (&elsewhere, &packing, "", "its shape or its filling is another"),
+        (&others, &packing, "", "no body with the name"),
+        (LOSING, &losing, "at = 0.1\n", "its shape or its filling is another"),
+    ] {
+        let scene = begun(folder.path(), text, (from, more));
+        let [alone, shared] = [1, 3].map(|count| {
+            let Err(error) = try_start(&scene, count, &out) else { panic!("{why}: {more}") };
+            assert!(!out.exists());
+            error.to_string()
+        });
+        assert!(alone.contains(why), "{why}: {alone}");
+        assert_eq!(alone, shared);
+    }
+}
+
+/// A particle that leaves the domain: steps are taken again from memory, with loads where they were, then the run ends
+/// with what one rank says.
 #[test]
 fn a_run_that_fails_says_what_one_says() {
     let folder = tempfile::tempdir().unwrap();
     let text =
         PLANE.replace("max = [3, 4]", "max = [3, 3]").replace("velocity = [0, -2]", "velocity = [0, 9]");
+    let loads = r#"
+[[loads]]
+name = "wind"
+body = "high"
+acceleration = ["30 * sin(50 * t)", 0]
+[[loads]]
+name = "grip"
+body = "high"
+on = "surface"
+traction = ["200 * sin(300 * t)", 0]
+"#;
+    let text = text + loads;
     let scene = scene(folder.path(), &text);
     let ended = |simulation: &mut dyn Simulation, out: &Path| {
         let error = run(&scene, simulation, &options(out), &mut |_| {}).unwrap_err();

@@ -278,7 +278,12 @@ fn goals(goals: &[Goal]) -> String {
             .to_owned(),
             number(goal.goal),
             goal.stretch.map_or(String::new(), number),
-            if goal.met { "met" } else { "missed" }.to_owned(),
+            match (goal.met, goal.bound) {
+                (true, _) => "met".to_owned(),
+                (false, None) => "missed".to_owned(),
+                (false, Some(bound)) if goal.is_beyond_bound() => format!("missed, beyond {}", number(bound)),
+                (false, Some(bound)) => format!("missed, within {}", number(bound)),
+            },
         ]);
     }
     format!("Goals.\n{table}")

@@ -107,10 +107,19 @@ impl Arguments {
             draw(&chart, file, chart.size())?;
             say(&format!("{} is written", file.display()))?;
         }
-        let Some(file) = self.json else { return Ok(()) };
+        // A moment's measurements say nothing of speed.
+        let beyond = record.goals.iter().filter(|goal| goal.is_beyond_bound() && extent != BenchExtent::Tiny);
+        let beyond: Vec<&str> = beyond.map(|goal| goal.name.as_str()).collect();
+        let sound = if beyond.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Run(miette!("worse than is known: {}", beyond.join("; "))))
+        };
+        let Some(file) = self.json else { return sound };
         let text = serde_json::to_string_pretty(&record).expect("a record is plain data") + "\n";
         files::write(&file, files::MEASUREMENTS, |file| file.write_all(text.as_bytes()))
             .map_err(|error| Failure::unwritten(&file, &error))?;
-        say(&format!("{} is written", file.display()))
+        say(&format!("{} is written", file.display()))?;
+        sound
     }
 }

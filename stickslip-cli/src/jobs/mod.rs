@@ -123,7 +123,7 @@ pub fn finished(folder: &Path, scene: &Scene) -> Option<Results> {
     let manifest = results.manifest();
     let same = manifest.version == env!("CARGO_PKG_VERSION")
         && manifest.status == Status::Finished
-        && *manifest.scene.value() == Manifest::record(scene);
+        && manifest.scene.value() == Manifest::record(scene);
     same.then_some(results)
 }
 

@@ -223,7 +223,7 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
         )));
     }
     let path = ParticleLoop::Lanes(Processor::best());
-    let lead = shared::lead(&loaded.scene, path, (ranks.clone(), PROGRAM));
+    let lead = shared::lead(Arc::new(loaded.scene.clone()), path, (ranks.clone(), PROGRAM));
     lead.map_err(|problem| Failure::input(loaded.source.locate(problem)))
 }
 
@@ -247,7 +247,8 @@ fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>, neighbours: usize) -> bool {
     if let (true, Ok(mut loaded)) = (all_read, read) {
         loaded.scene.time.end = end;
         // What is wrong with the scene, the first one tells.
-        let _ = shared::follow(&loaded.scene, ParticleLoop::Lanes(Processor::best()), (ranks, PROGRAM));
+        let _ =
+            shared::follow(Arc::new(loaded.scene), ParticleLoop::Lanes(Processor::best()), (ranks, PROGRAM));
     }
     true
 }

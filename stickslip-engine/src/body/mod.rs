@@ -10,6 +10,7 @@ use crate::particles::Particles;
 use crate::rigid::RigidMotion;
 use crate::scene::VolumeChange;
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 /// A material point.
@@ -64,9 +65,56 @@ impl<N: Number> Gyration<N> {
     }
 }
 
+/// A body: what there is of it here. Where ranks share a simulation, one of which nothing is here is no more than a
+/// reference to what all bodies of its kind have in common: it deforms, and has neither particles nor a name, and an
+/// empty shape.
+#[derive(Clone, Debug)]
+pub enum Body<T, const D: usize> {
+    /// With all that belongs to it.
+    Here(Box<BodyHere<T, D>>),
+    /// Without.
+    Elsewhere(Arc<BodyHere<T, D>>),
+}
+
+impl<T, const D: usize> Deref for Body<T, D> {
+    type Target = BodyHere<T, D>;
+
+    #[inline(always)]
+    fn deref(&self) -> &BodyHere<T, D> {
+        match self {
+            Body::Here(body) => body,
+            Body::Elsewhere(kind) => kind,
+        }
+    }
+}
+
+impl<T, const D: usize> DerefMut for Body<T, D> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut BodyHere<T, D> {
+        self.here_mut().expect("it is here")
+    }
+}
+
+impl<T, const D: usize> From<BodyHere<T, D>> for Body<T, D> {
+    fn from(body: BodyHere<T, D>) -> Self {
+        Body::Here(Box::new(body))
+    }
+}
+
+impl<T, const D: usize> Body<T, D> {
+    /// It, if something of it is here.
+    #[inline(always)]
+    pub fn here_mut(&mut self) -> Option<&mut BodyHere<T, D>> {
+        match self {
+            Body::Here(body) => Some(body),
+            Body::Elsewhere(_) => None,
+        }
+    }
+}
+
 /// Particles that share a material and move as one body.
 #[derive(Clone, Debug)]
-pub struct Body<T, const D: usize> {
+pub struct BodyHere<T, const D: usize> {
     /// Name in the scene.
     pub name: String,
     /// Constitutive law, one for all bodies of a material.
@@ -89,7 +137,23 @@ pub struct Body<T, const D: usize> {
     pub volume_change: VolumeChange,
 }
 
-impl<T: Real, const D: usize> Body<T, D> {
+impl<T: Real, const D: usize> BodyHere<T, D> {
+    /// The same body with other particles, and moved otherwise if it is rigid.
+    pub fn like(&self, particles: Particles<T, D>, motion: Option<Box<RigidMotion>>) -> Self {
+        BodyHere {
+            name: self.name.clone(),
+            material: self.material.clone(),
+            density: self.density,
+            expansion: self.expansion,
+            particles,
+            motion,
+            whole: self.whole.clone(),
+            thickness: self.thickness,
+            gyration: self.gyration,
+            volume_change: self.volume_change,
+        }
+    }
+
     /// Kinetic energy of a particle, m (v^2 + k^2 w^2)/2 [J].
     #[inline]
     pub fn kinetic(&self, particle: &Particle<T, D>) -> T {

@@ -1,6 +1,6 @@
 //! Sums over the particles of a body, several at a time.
 
-use super::{Body, Gyration};
+use super::{BodyHere, Gyration};
 use crate::exact::ExactSum;
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Processor, Work};
 use crate::material::{Material, Recall};
@@ -353,6 +353,18 @@ impl TurningSums {
         quotient::<D>(&inertia, angular)
     }
 
+    /// Angular velocity of a body whose particles have velocities and no spins yet: as if they were points. Where these
+    /// stand on one line, which cannot tell how it turns about itself, they keep a little of their own inertia [rad/s].
+    /// Of the particles as points, and as they are.
+    pub fn spin_of_points<const D: usize>([points, whole]: &[Self; 2]) -> [f64; 3] {
+        let ((points, angular), (whole, _)) = (points.rounded(), whole.rounded());
+        let size = |inertia: &Matrix<f64>| if D == 2 { inertia.0[2][2] } else { inertia.det() };
+        if size(&points) > ON_A_LINE * size(&whole) {
+            return quotient::<D>(&points, angular);
+        }
+        quotient::<D>(&(points * (1.0 - OWN_SHARE) + whole * OWN_SHARE), angular)
+    }
+
     /// The sums of both.
     fn with(mut self, mut other: Self) -> Self {
         self.all().zip(other.all()).for_each(|(sum, other)| sum.merge(other));
@@ -376,7 +388,7 @@ const ON_A_LINE: f64 = 1e-6;
 /// round-off of single precision makes no spin about it.
 const OWN_SHARE: f64 = 1e-3;
 
-impl<T: Laned, const D: usize> Body<T, D> {
+impl<T: Laned, const D: usize> BodyHere<T, D> {
     /// Mass, momentum and energy.
     pub fn totals(&self) -> Totals {
         self.total_sums().rounded()
@@ -399,24 +411,13 @@ impl<T: Laned, const D: usize> Body<T, D> {
         self.turning_sums(totals, self.gyration()).spin::<D>()
     }
 
-    /// Angular velocity of a body whose particles have velocities and no spins yet: as if they were points. Where these
-    /// stand on one line, which cannot tell how it turns about itself, they keep a little of their own inertia [rad/s].
-    pub fn spin_of_points(&self, totals: &Totals) -> [f64; 3] {
-        let (points, angular) = self.turning(totals, Gyration { cell: 0.0, share: 0.0 });
-        let (whole, _) = self.turning(totals, self.gyration());
-        let size = |inertia: &Matrix<f64>| if D == 2 { inertia.0[2][2] } else { inertia.det() };
-        if size(&points) > ON_A_LINE * size(&whole) {
-            return quotient::<D>(&points, angular);
-        }
-        quotient::<D>(&(points * (1.0 - OWN_SHARE) + whole * OWN_SHARE), angular)
+    /// What [`TurningSums::spin_of_points`] needs of these particles of a body with these totals.
+    pub fn turning_of_points(&self, totals: &Totals) -> [TurningSums; 2] {
+        [Gyration { cell: 0.0, share: 0.0 }, self.gyration()].map(|size| self.turning_sums(totals, size))
     }
 
-    /// Inertia tensor [kg m^2] and angular momentum [kg m^2/s] about the centre of mass, for particles of this size.
-    fn turning(&self, totals: &Totals, gyration: Gyration<f64>) -> (Matrix<f64>, [f64; 3]) {
-        self.turning_sums(totals, gyration).rounded()
-    }
-
-    /// The same before it is rounded, of these particles of a body with these totals.
+    /// Inertia and angular momentum about the centre of mass, for particles of this size, of these particles of a body
+    /// with these totals.
     pub fn turning_sums(&self, totals: &Totals, gyration: Gyration<f64>) -> TurningSums {
         let center = totals.first_moment.map(|x| x / totals.mass);
         let mean = totals.momentum.map(|p| p / totals.mass);

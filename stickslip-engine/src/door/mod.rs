@@ -72,8 +72,8 @@ pub trait View {
     fn removed(&self) -> Vec<RemovedParticles> {
         Vec::new()
     }
-    /// What [`Simulation::write`] changed since the start, in the order of the bodies; nothing of simulations that
-    /// cannot be written to.
+    /// What [`Simulation::write`] changed since the start, in the order of the bodies; nothing where nothing was
+    /// written.
     fn written(&self) -> Vec<WrittenValues> {
         Vec::new()
     }
@@ -234,6 +234,21 @@ pub trait Simulation: View + Send {
     /// A body of the same name is another one there; then nothing is changed.
     fn begin_from(&mut self, _state: &SavedState, _velocities: StartVelocities) -> Result<(), RestoreError> {
         Err(RestoreError("this simulation takes up none".to_string()))
+    }
+    /// The same of ranks that share the simulation: the state without particles, which the program of each rank finds
+    /// by what it is asked, see [`crate::shared::Program`], and what becomes of velocities. `look` gets the bytes of
+    /// the particles there as [`Simulation::visit_bytes`] shows them. None where nobody shares it.
+    ///
+    /// # Errors
+    /// A body of the same name is another one there, or a rank does not find its share; then the simulation has lost
+    /// particles.
+    fn begin_on_ranks(
+        &mut self,
+        _rest: (&SavedState, StartVelocities),
+        _asked: &[u8],
+        _look: &mut dyn FnMut(usize, &[u8]),
+    ) -> Option<Result<(), NotTakenUp>> {
+        None
     }
     /// Takes up a state, and goes on from there.
     ///

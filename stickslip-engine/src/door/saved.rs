@@ -106,26 +106,21 @@ impl SavedState {
     /// It has not the spin of particles, where they were before anything moved, and momenta of rigid bodies: a scene
     /// that begins from it finds these from its own filling and from the velocities.
     pub fn of_snapshot(snapshot: &ParticleSnapshot, time: f64, names: &[String]) -> Self {
-        let mut rows = vec![Vec::new(); names.len()];
-        for (row, &body) in snapshot.body.iter().enumerate() {
-            if let Some(rows) = rows.get_mut(body as usize) {
-                rows.push(row);
-            }
+        let places: Vec<Option<usize>> = (0..names.len()).map(Some).collect();
+        let mut state = Self::of_frame(time, &[]);
+        for SavedShare { body, numbers, columns } in SavedShare::of_snapshot(snapshot, &places) {
+            let name = names[body].clone();
+            state.bodies.push(SavedBody { name, numbers, columns, motion: None, missing: 0 });
         }
-        let history =
-            snapshot.history.iter().map(|column| (&column.name[..], column.kind, &column.values[..]));
-        let columns: Vec<(&str, Kind, &[f64])> = snapshot
-            .columns()
-            .map(|(column, values)| (column.name, column.kind, values))
-            .chain(history)
-            .collect();
-        let body = |(name, rows): (&String, Vec<usize>)| SavedBody {
+        state
+    }
+
+    /// The same without particles, of bodies of these names that have some.
+    pub fn of_frame(time: f64, names: &[String]) -> Self {
+        let body = |name: &String| SavedBody {
             name: name.clone(),
-            numbers: rows.iter().map(|&row| snapshot.number[row]).collect(),
-            columns: columns
-                .iter()
-                .map(|column| SavedColumn::of(*column, &rows, snapshot.dimension))
-                .collect(),
+            numbers: Vec::new(),
+            columns: Vec::new(),
             motion: None,
             missing: 0,
         };
@@ -133,7 +128,7 @@ impl SavedState {
             time,
             steps: 0,
             phase: 0,
-            bodies: names.iter().zip(rows).filter(|(_, rows)| !rows.is_empty()).map(body).collect(),
+            bodies: names.iter().map(body).collect(),
             signal: None,
             damping: 0.0,
             impacts: 0.0,
@@ -243,6 +238,34 @@ pub struct SavedShare {
 }
 
 impl SavedShare {
+    /// Particles of a snapshot, body by body, where it is known at which place each of its bodies stands in a state.
+    pub fn of_snapshot(snapshot: &ParticleSnapshot, places: &[Option<usize>]) -> Vec<SavedShare> {
+        let mut rows = vec![Vec::new(); places.len()];
+        for (row, &body) in snapshot.body.iter().enumerate() {
+            if let Some(rows) = rows.get_mut(body as usize) {
+                rows.push(row);
+            }
+        }
+        let history =
+            snapshot.history.iter().map(|column| (&column.name[..], column.kind, &column.values[..]));
+        let columns: Vec<(&str, Kind, &[f64])> = snapshot
+            .columns()
+            .map(|(column, values)| (column.name, column.kind, values))
+            .chain(history)
+            .collect();
+        let share = |(&body, rows): (&Option<usize>, Vec<usize>)| {
+            Some(SavedShare {
+                body: body.filter(|_| !rows.is_empty())?,
+                numbers: rows.iter().map(|&row| snapshot.number[row]).collect(),
+                columns: columns
+                    .iter()
+                    .map(|column| SavedColumn::of(*column, &rows, snapshot.dimension))
+                    .collect(),
+            })
+        };
+        places.iter().zip(rows).filter_map(share).collect()
+    }
+
     /// Deals out particles of which bodies have so many, body by body and at most so many at a time: `share` gives some
     /// of a body by their places in memory.
     ///

@@ -140,7 +140,7 @@ impl<const D: usize> ActiveBlocks<D> {
             self.here = (0..bodies as u32).filter(|&body| count(body as usize) > 0).collect();
             if self.here.is_empty() {
                 // Somebody has to say that there are no blocks.
-                self.here = (0..bodies as u32).collect();
+                self.here = (0..bodies.min(1) as u32).collect();
             }
         }
     }

@@ -489,6 +489,18 @@ impl<T: Real, const D: usize> Particles<T, D> {
         self.guests = 0;
     }
 
+    /// Those with some numbers, in any order.
+    #[must_use]
+    pub fn with_numbers(&self, numbers: &[u32]) -> Self {
+        let mut wanted = numbers.to_vec();
+        wanted.sort_unstable();
+        let gone = self.numbers().iter().zip(0..).filter(|(number, _)| wanted.binary_search(number).is_err());
+        let gone: Vec<u32> = gone.map(|(_, place)| place).collect();
+        let mut some = self.clone();
+        some.remove(&gone);
+        some
+    }
+
     /// Keeps the first particles only.
     pub fn truncate(&mut self, count: usize) {
         let rest: Vec<u32> = (count as u32..self.len as u32).collect();

@@ -187,6 +187,14 @@ pub fn add_up(ranks: &dyn Ranks, sums: &mut Vec<ExactSum>) {
     *sums = combined(ranks, sums, joined);
 }
 
+/// The same of sums that lie anywhere.
+pub fn add_up_each<'a>(ranks: &dyn Ranks, sums: impl Iterator<Item = &'a mut ExactSum>) {
+    let places: Vec<&mut ExactSum> = sums.collect();
+    let mut all: Vec<ExactSum> = places.iter().map(|sum| (**sum).clone()).collect();
+    add_up(ranks, &mut all);
+    places.into_iter().zip(all).for_each(|(place, sum)| *place = sum);
+}
+
 /// Sums that belong together, added.
 pub fn joined(mut sums: Vec<ExactSum>, others: Vec<ExactSum>) -> Vec<ExactSum> {
     ExactSum::merge_each(&mut sums, &others);

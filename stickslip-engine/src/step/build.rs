@@ -1,6 +1,6 @@
 //! From a scene to a simulation.
 
-use super::among::{Find, SharedOut, Walked, share_out, walk, walk_together};
+use super::among::{Find, Kinds, Look, SharedOut, Walked, share_out, walk, walk_together};
 use super::mechanism::{JointSums, RigidSurfaces};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
@@ -10,15 +10,15 @@ use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
 use crate::basis::{Basis, Cpdi, Cubic, Gimp, Linear};
-use crate::body::{Body, Particle};
+use crate::body::{Body, BodyHere, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
 use crate::damping::{BulkViscosity, NodeDamping, viscosity_columns};
-use crate::door::{NotTakenUp, RemovedParticles, SavedState, Simulation, WrittenValues};
+use crate::door::{NotTakenUp, SavedState, Simulation};
 use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE, locate};
-use crate::initial_stress::{self, InitialStress};
+use crate::initial_stress;
 use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
@@ -28,6 +28,7 @@ use crate::ranks::Ranks;
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
     self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
+    StartVelocities,
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
@@ -64,17 +65,17 @@ pub fn build_among(
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
 ) -> Result<Box<dyn Simulation>, Problem> {
-    Ok(build_share(scene, path, ranks)?)
+    Ok(build_share(&Arc::new(scene.clone()), path, ranks)?)
 }
 
 /// The same.
 pub(crate) fn build_share(
-    scene: &Scene,
+    scene: &Arc<Scene>,
     path: ParticleLoop,
     ranks: Arc<dyn Ranks>,
 ) -> Result<Box<dyn Shareable>, Problem> {
     super::among::can_be_shared(scene)?;
-    build_for(scene, path, Keeping::Share(ranks))
+    build_for(scene, path, Keeping::Share(scene.clone(), ranks))
 }
 
 /// A simulation without particles, which can [take up](Shareable::take_up_share) those of a saved state; all ranks
@@ -83,20 +84,20 @@ pub(crate) fn build_share(
 /// # Errors
 /// What [`check::problems`] finds.
 pub(crate) fn build_empty(
-    scene: &Scene,
+    scene: &Arc<Scene>,
     path: ParticleLoop,
     ranks: &dyn Ranks,
 ) -> Result<Box<dyn Shareable>, Problem> {
-    build_for(scene, path, Keeping::None(ranks))
+    build_for(scene, path, Keeping::None(scene.clone(), ranks))
 }
 
 /// Which particles of a scene a simulation begins with.
 enum Keeping<'a> {
     All,
-    /// None, on any of several ranks.
-    None(&'a dyn Ranks),
+    /// None, on any of several ranks, which keep the scene.
+    None(Arc<Scene>, &'a dyn Ranks),
     /// Those of one of several ranks.
-    Share(Arc<dyn Ranks>),
+    Share(Arc<Scene>, Arc<dyn Ranks>),
 }
 
 /// A simulation that ranks can share.
@@ -110,9 +111,20 @@ pub(crate) trait Shareable: Simulation {
     /// It is of another scene, or a rank does not find its particles: all ranks say so.
     fn take_up_share(
         &mut self,
-        of: (&Scene, Arc<dyn Ranks>),
+        of: (&Arc<Scene>, Arc<dyn Ranks>),
         rest: &SavedState,
         find: Find,
+    ) -> Result<(), NotTakenUp>;
+
+    /// Lets bodies begin as those of another run, of whose particles each rank finds some, which it also shows.
+    ///
+    /// # Errors
+    /// One is another body there, or a rank does not find its particles: all ranks say so, and have lost some.
+    fn begin_share(
+        &mut self,
+        of: (&Arc<Scene>, Arc<dyn Ranks>),
+        from: (&SavedState, StartVelocities),
+        found: (Find, Look),
     ) -> Result<(), NotTakenUp>;
 }
 
@@ -123,11 +135,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
 
     fn take_up_share(
         &mut self,
-        of: (&Scene, Arc<dyn Ranks>),
+        of: (&Arc<Scene>, Arc<dyn Ranks>),
         rest: &SavedState,
         find: Find,
     ) -> Result<(), NotTakenUp> {
         self.take_up_among(of, rest, find)
+    }
+
+    fn begin_share(
+        &mut self,
+        of: (&Arc<Scene>, Arc<dyn Ranks>),
+        from: (&SavedState, StartVelocities),
+        found: (Find, Look),
+    ) -> Result<(), NotTakenUp> {
+        self.begin_among(of, from, found)
     }
 }
 
@@ -179,13 +200,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 kept: Vec::new(),
             })
         };
-        let ranks = match keeping {
-            Keeping::All => return Self::filled(scene, path, &|number| Filled::of(scene, number)),
-            Keeping::None(ranks) => {
+        let (kept, ranks) = match keeping {
+            Keeping::All => return Self::filled((scene, None), path, &|number| Filled::of(scene, number)),
+            Keeping::None(kept, ranks) => {
                 let walked = walk_together(scene, ranks, &mut |_, _| ());
-                return Self::filled(scene, path, &|number| known(&walked[number]));
+                return Self::filled((scene, Some(kept)), path, &|number| known(&walked[number]));
             }
-            Keeping::Share(ranks) => ranks,
+            Keeping::Share(kept, ranks) => (kept, ranks),
         };
         let (origin, periods) = (origin(scene), periods::<D>(scene));
         let block = |x: [f64; 3]| {
@@ -195,7 +216,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         };
         let SharedOut { walked, here, partition, homes } = share_out::<D>(scene, &*ranks, (periods, block));
         let own = |site: &ParticleSite| partition.owner(block(site.position)) == ranks.rank();
-        let mut engine = Self::filled(scene, path, &|number| {
+        let mut engine = Self::filled((scene, Some(kept)), path, &|number| {
             let mut filled = known(&walked[number])?;
             if here.contains(&number) {
                 let sites = (0..).zip(walk(scene, &scene.bodies[number]));
@@ -207,9 +228,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         Ok(engine)
     }
 
-    /// The simulation with the particles that fill each body, by its number; none fill one without bounds.
+    /// The simulation with the particles that fill each body, by its number; none fill one without bounds. One of
+    /// several ranks keeps the scene.
     fn filled(
-        scene: &Scene,
+        (scene, kept): (&Scene, Option<Arc<Scene>>),
         path: ParticleLoop,
         filled: &dyn Fn(usize) -> Option<Filled>,
     ) -> Result<Self, Problem> {
@@ -224,6 +246,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut laws: Vec<Option<Arc<Material<T>>>> = vec![None; scene.materials.len()];
         let mut unbounded = Vec::new();
         let heated = heated_bodies(scene);
+        let mut kinds: Option<Kinds<T, D>> = kept.map(Kinds::new);
         for (number, body) in scene.bodies.iter().enumerate() {
             let sites = scene.lattice(body);
             let filled = filled(number);
@@ -242,69 +265,41 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 });
                 Filled::default()
             });
-            let free = body.as_free_rigid().and_then(|free| {
-                let properties = MassProperties::of(scene, body, free)?;
-                Some(RigidMotion::free(&properties, free.velocity, free.spin))
-            });
-            let motion = free.or_else(|| RigidMotion::prescribed(&body.motion, center));
-            let given = match &body.shape {
-                Shape::Curved(Curved::PointCloud(cloud)) => cloud.velocities(),
-                _ => None,
-            };
-            let velocity = |number: usize, x| match (&body.motion, &motion) {
-                (BodyMotion::Free { velocity, spin }, _) => {
-                    given.map_or_else(|| about(center, *velocity, *spin, x), |given| given[number])
-                }
-                (_, Some(motion)) => motion.velocity_at(x),
-                _ => [0.0; 3],
-            };
-            // Only by some transfers do particles keep a spin; those of rigid bodies have theirs whatever the transfer,
-            // and give the nodes their exact velocity.
-            let turning = match (&body.motion, &motion) {
-                (BodyMotion::Free { spin, .. }, _) if has_spin(scene.time.transfer) => *spin,
-                (_, Some(motion)) => motion.spin(),
-                _ => [0.0; 3],
-            };
-            // The particles of a free rigid body weigh what it weighs, whatever its mass is given as.
-            let density = match motion.as_ref().and_then(RigidMotion::as_free) {
-                Some(free) => free.mass / filled.volume,
-                None => scene.materials[body.material].density,
-            };
+            let begun = Begun::of(scene, number, (filled.volume, center));
             all_filled.push(filled.count);
-            bodies.push(Body {
-                name: body.name.clone(),
-                material: {
-                    let law = &mut laws[body.material];
-                    if law.is_none() {
-                        *law = Some(Arc::new(material(scene, body)?));
-                    }
-                    law.clone().expect("it has been made")
-                },
-                density: T::of(scene.materials[body.material].density),
-                expansion: T::of(scene.materials[body.material].thermal_expansion),
-                particles: {
-                    let own = own_columns(scene, body, heated.contains(&number));
-                    let stresses = initial_stress::of_body(scene, number)?;
-                    particles((own, &stresses), &filled.kept, (velocity, turning, density))
-                },
-                motion: motion.map(Box::new),
-                whole: whole::<D>(scene, number),
-                thickness: scene.dimension.thickness(),
-                gyration: rotation::gyration::<T, B>(cell, half_side),
-                volume_change: scene.materials[body.material].volume_change,
+            let law = &mut laws[body.material];
+            if law.is_none() {
+                *law = Some(Arc::new(material(scene, body)?));
+            }
+            let (is_elsewhere, law) = (!body.is_rigid() && filled.kept.is_empty(), law.clone());
+            let make = || -> Result<BodyHere<T, D>, Problem> {
+                Ok(BodyHere {
+                    name: body.name.clone(),
+                    material: law.expect("it has been made"),
+                    density: T::of(scene.materials[body.material].density),
+                    expansion: T::of(scene.materials[body.material].thermal_expansion),
+                    particles: begun.particles(&filled.kept, heated.contains(&number))?,
+                    motion: begun.motion.map(Box::new),
+                    whole: whole::<D>(scene, number),
+                    thickness: scene.dimension.thickness(),
+                    gyration: rotation::gyration::<T, B>(cell, half_side),
+                    volume_change: scene.materials[body.material].volume_change,
+                })
+            };
+            bodies.push(match kinds.as_mut().filter(|_| is_elsewhere) {
+                Some(kinds) => kinds.of(number, make)?,
+                None => make()?.into(),
             });
         }
         let periods = periods::<D>(scene);
         let origin = origin(scene);
-        let removed = vec![RemovedParticles::default(); bodies.len()];
-        let written = vec![WrittenValues::default(); bodies.len()];
         let tallies = scene.outputs.measurements.faces().next().is_some();
         let all_that =
             |is: &dyn Fn(&Body<T, D>) -> bool| (0..bodies.len()).filter(|&i| is(&bodies[i])).collect();
-        let (rigid, together) = (all_that(&Body::is_rigid), all_that(&|body| over_arrays(body).is_some()));
-        let averages_volume = bodies.iter().any(Body::averages_volume);
-        let points = |load: &scene::Load| LoadPoints::new(scene, load, all_filled[load.body]);
-        let loads = scene.loads.iter().map(points).collect();
+        let (rigid, together) =
+            (all_that(&|body| body.is_rigid()), all_that(&|body| over_arrays(body).is_some()));
+        let averages_volume = bodies.iter().any(|body| body.averages_volume());
+        let loads = loads(scene, (&bodies, &all_filled), kinds.is_some());
         Ok(Engine {
             settings: Settings {
                 lattice: Lattice {
@@ -341,8 +336,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 contact_sums: ContactSums::default(),
                 loads: vec![LoadSums::default(); scene.loads.len()],
                 joints: vec![JointSums::default(); scene.joints.len()],
-                removed,
-                written,
+                removed: Vec::new(),
+                written: Vec::new(),
                 touch_forces: Vec::new(),
                 springs: vec![JointSums::default(); scene.springs.len()],
                 walls: vec![
@@ -368,6 +363,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             ),
             held: None,
             among: None,
+            kinds,
             watch: Stopwatch::default(),
             basis: PhantomData,
         })
@@ -431,38 +427,128 @@ fn about(center: [f64; 3], velocity: [f64; 3], spin: [f64; 3], x: [f64; 3]) -> [
     std::array::from_fn(|i| velocity[i] + turn[i])
 }
 
-fn particles<T: Real, const D: usize>(
-    (own, stresses): (OwnColumns, &[InitialStress]),
-    kept: &[(u32, ParticleSite)],
-    (velocity, turning, density): (impl Fn(usize, [f64; 3]) -> [f64; 3], [f64; 3], f64),
-) -> Particles<T, D> {
-    let particle = |place: usize| {
-        let (number, ref site) = kept[place];
-        let number = number as usize;
-        Particle {
-            position: Vector::of(site.position),
-            velocity: Vector::of(velocity(number, site.position)),
-            spin: spin::<T, D>(turning),
-            mass: T::of(site.volume * density),
-            volume: T::of(site.volume),
-            half_width: T::of(site.half_width),
-            deformation: Matrix::IDENTITY,
-            stress: stresses
-                .get(number)
-                .map_or(Symmetric::ZERO, |begun| Symmetric(begun.stress.0.map(T::of))),
-            number: number as u32,
-        }
+/// The loads of a scene on bodies that have been filled with so many particles: if ranks share these, with the points
+/// that those here carry.
+pub(super) fn loads<T: Real, const D: usize>(
+    scene: &Scene,
+    (bodies, filled): (&[Body<T, D>], &[usize]),
+    shared: bool,
+) -> Vec<LoadPoints> {
+    let load = |load: &scene::Load| {
+        let here = shared.then(|| {
+            let mut numbers = bodies[load.body].particles.numbers().to_vec();
+            numbers.sort_unstable();
+            numbers
+        });
+        LoadPoints::new(scene, load, filled[load.body], here.as_deref())
     };
-    let mut particles = Particles::from_fn(kept.len(), own, particle);
-    if natural::begins_stretched(own.natural) {
-        let first = particles.view().natural_columns().start;
-        for k in 0..stress_entries(D) {
-            let line = particles.line_mut(first + k).iter_mut();
-            let begun = kept.iter().map(|&(number, _)| &stresses[number as usize]);
-            line.zip(begun).for_each(|(entry, begun)| *entry = T::of(begun.stretch.0[k]));
-        }
+    scene.loads.iter().map(load).collect()
+}
+
+/// How a body of a scene begins.
+struct Begun<'a> {
+    scene: &'a Scene,
+    number: usize,
+    /// Of its volume, which its own rotation leaves where it is [m].
+    center: [f64; 3],
+    /// [kg/m^3]
+    density: f64,
+    /// If it is rigid.
+    motion: Option<RigidMotion>,
+}
+
+impl<'a> Begun<'a> {
+    /// That of a body with this volume and its centre.
+    fn of(scene: &'a Scene, number: usize, (volume, center): (f64, [f64; 3])) -> Self {
+        let body = &scene.bodies[number];
+        let free = body.as_free_rigid().and_then(|free| {
+            let properties = MassProperties::of(scene, body, free)?;
+            Some(RigidMotion::free(&properties, free.velocity, free.spin))
+        });
+        let motion = free.or_else(|| RigidMotion::prescribed(&body.motion, center));
+        // The particles of a free rigid body weigh what it weighs, whatever its mass is given as.
+        let density = match motion.as_ref().and_then(RigidMotion::as_free) {
+            Some(free) => free.mass / volume,
+            None => scene.materials[body.material].density,
+        };
+        Begun { scene, number, center, density, motion }
     }
-    particles
+
+    /// Some of its particles.
+    fn particles<T: Real, const D: usize>(
+        &self,
+        kept: &[(u32, ParticleSite)],
+        heated: bool,
+    ) -> Result<Particles<T, D>, Problem> {
+        let Begun { scene, number, center, density, motion } = self;
+        let body = &scene.bodies[*number];
+        let places = kept.iter().map(|(_, site)| site.position).collect();
+        let stresses = initial_stress::at(scene, *number, places)?;
+        let given = match &body.shape {
+            Shape::Curved(Curved::PointCloud(cloud)) => cloud.velocities(),
+            _ => None,
+        };
+        let velocity = |number: usize, x| match (&body.motion, motion) {
+            (BodyMotion::Free { velocity, spin }, _) => {
+                given.map_or_else(|| about(*center, *velocity, *spin, x), |given| given[number])
+            }
+            (_, Some(motion)) => motion.velocity_at(x),
+            _ => [0.0; 3],
+        };
+        // Only by some transfers do particles keep a spin; those of rigid bodies have theirs whatever the transfer,
+        // and give the nodes their exact velocity.
+        let turning = match (&body.motion, motion) {
+            (BodyMotion::Free { spin, .. }, _) if has_spin(scene.time.transfer) => *spin,
+            (_, Some(motion)) => motion.spin(),
+            _ => [0.0; 3],
+        };
+        let particle = |place: usize| {
+            let (number, ref site) = kept[place];
+            let number = number as usize;
+            Particle {
+                position: Vector::of(site.position),
+                velocity: Vector::of(velocity(number, site.position)),
+                spin: spin::<T, D>(turning),
+                mass: T::of(site.volume * density),
+                volume: T::of(site.volume),
+                half_width: T::of(site.half_width),
+                deformation: Matrix::IDENTITY,
+                stress: stresses
+                    .get(place)
+                    .map_or(Symmetric::ZERO, |begun| Symmetric(begun.stress.0.map(T::of))),
+                number: number as u32,
+            }
+        };
+        let own = own_columns(scene, body, heated);
+        let mut particles = Particles::from_fn(kept.len(), own, particle);
+        if natural::begins_stretched(own.natural) {
+            let first = particles.view().natural_columns().start;
+            for k in 0..stress_entries(D) {
+                let line = particles.line_mut(first + k).iter_mut();
+                line.zip(&stresses).for_each(|(entry, begun)| *entry = T::of(begun.stretch.0[k]));
+            }
+        }
+        Ok(particles)
+    }
+}
+
+/// The particles of a body with some numbers, in any order, as they fill it; none of a body without bounds.
+///
+/// # Errors
+/// What [`check::problems`] finds.
+pub(super) fn particles_with<T: Real, const D: usize>(
+    scene: &Scene,
+    number: usize,
+    numbers: &[u32],
+) -> Result<Particles<T, D>, Problem> {
+    let body = &scene.bodies[number];
+    let walked = (!numbers.is_empty()).then(|| Walked::of(scene, body, &mut |_| ())).flatten();
+    let mut wanted = numbers.to_vec();
+    wanted.sort_unstable();
+    let some = (0..).zip(walk(scene, body)).filter(|(number, _)| wanted.binary_search(number).is_ok());
+    let (size, kept) = walked
+        .map_or_else(Default::default, |walked| ((walked.volume, walked.center), some.collect::<Vec<_>>()));
+    Begun::of(scene, number, size).particles(&kept, heated_bodies(scene).contains(&number))
 }
 
 /// Bodies that loads heat.
@@ -490,7 +576,7 @@ pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumn
 }
 
 /// The undeformed shape of a body with its images.
-fn whole<const D: usize>(scene: &Scene, number: usize) -> MirroredShape {
+pub(super) fn whole<const D: usize>(scene: &Scene, number: usize) -> MirroredShape {
     let body = &scene.bodies[number];
     // A mirror does not move along with what is free, unless that slides along it.
     let stays = |mirror: &Mirror| body.as_free_rigid().is_none() || scene.slides_along(number, mirror.axis);

@@ -44,7 +44,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             .resize_with(threads.max(self.workspace.threads.windows.len()), Mutex::default);
         self.workspace.threads.columns.clear();
         let bodies = &mut self.state.bodies;
-        let opened = self.workspace.active.here().iter().map(|&body| bodies[body as usize].particles.open());
+        let opened = self.workspace.active.here().iter().map(|&body| {
+            let body = &mut bodies[body as usize];
+            match body.here_mut() {
+                Some(body) => body.particles.open(),
+                None => body.particles.view(),
+            }
+        });
         self.workspace.threads.columns.extend(opened);
         let mut among = self.among.take();
         let side = window_side(B::WIDTH).pow(D as u32);

@@ -53,8 +53,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let set = |line: &mut [T], of: fn(&Warmed<T>) -> T| {
                 line.iter_mut().zip(&*room).for_each(|(entry, warmed)| *entry = of(warmed));
             };
-            set(body.particles.line_mut(first), |warmed| warmed.temperature);
-            set(body.particles.line_mut(first + 1), |warmed| warmed.strain);
+            if let Some(body) = body.here_mut() {
+                set(body.particles.line_mut(first), |warmed| warmed.temperature);
+                set(body.particles.line_mut(first + 1), |warmed| warmed.strain);
+            }
             let mut work = [room.iter().map(|warmed| warmed.work).sum::<ExactSum>()];
             self.among.iter().for_each(|among| among.add_up(work.iter_mut()));
             sums.work += work[0].value();

@@ -3,7 +3,9 @@
 use super::Engine;
 use super::state::State;
 use crate::basis::Basis;
+use crate::body::Body;
 use crate::lanes::Laned;
+use crate::part::PartPoint;
 use crate::tensor::Real;
 use crate::threads::each;
 
@@ -32,9 +34,12 @@ impl<T: Real, const D: usize> State<T, D> {
             steps,
             phase,
         } = other;
-        each(&mut self.bodies, 1, |i, body| {
-            body.particles.become_copy_of(&bodies[i].particles);
-            body.motion.clone_from(&bodies[i].motion);
+        each(&mut self.bodies, 1, |i, body| match (body.here_mut(), &bodies[i]) {
+            (Some(body), Body::Here(other)) => {
+                body.particles.become_copy_of(&other.particles);
+                body.motion.clone_from(&other.motion);
+            }
+            (_, other) => body.clone_from(other),
         });
         self.unbounded.clone_from(unbounded);
         self.contact_sums.clone_from(contact_sums);
@@ -51,19 +56,36 @@ impl<T: Real, const D: usize> State<T, D> {
     }
 }
 
+/// The state before a step.
+pub(super) struct Held<T, const D: usize> {
+    state: State<T, D>,
+    /// Where ranks share particles, of each load the points that are here: they go with these.
+    points: Vec<Vec<PartPoint>>,
+}
+
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Copies the state.
     pub(super) fn hold_state(&mut self) {
+        let loads = self.settings.loads.iter().filter(|_| self.among.is_some());
         match &mut self.held {
-            Some(held) => held.become_copy_of(&self.state),
-            None => self.held = Some(self.state.clone()),
+            Some(held) => {
+                held.state.become_copy_of(&self.state);
+                held.points.iter_mut().zip(loads).for_each(|(points, load)| points.clone_from(&load.points));
+            }
+            None => {
+                let points = loads.map(|load| load.points.clone()).collect();
+                self.held = Some(Held { state: self.state.clone(), points });
+            }
         }
     }
 
     /// Goes back to the copy, if there is one.
     pub(super) fn take_back_state(&mut self) -> bool {
         let Some(held) = &self.held else { return false };
-        self.state.become_copy_of(held);
+        self.state.become_copy_of(&held.state);
+        for (load, points) in self.settings.loads.iter_mut().zip(&held.points) {
+            load.points.clone_from(points);
+        }
         true
     }
 }

@@ -87,8 +87,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn remove(&mut self, (number, outside): (usize, &[u32]), (count, first): (u64, [f64; 3])) {
         let gravity = self.settings.gravity.constant().unwrap_or_default();
         let before = self.totals_of(number);
-        self.state.bodies[number].particles.remove(outside);
+        if !outside.is_empty() {
+            self.state.bodies[number].particles.remove(outside);
+        }
         let after = self.totals_of(number);
+        self.state.removed.resize(self.state.bodies.len(), RemovedParticles::default());
         let removed = &mut self.state.removed[number];
         if removed.count == 0 {
             (removed.time, removed.place) = (self.state.time, first);

@@ -19,6 +19,7 @@ use crate::lanes::Laned;
 use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
 use crate::outside::OutsidePoints;
 use crate::part::PartPoint;
+use crate::particles::by_number;
 use crate::scene::{Face, OutsideValue};
 use crate::tensor::{Real, Vector, cross};
 use crate::threads::each;
@@ -29,16 +30,20 @@ use std::time::Instant;
 const POINTS: usize = 32;
 /// The place in memory of a particle that has left the domain.
 pub(super) const NOWHERE: u32 = u32::MAX;
+/// That of one which must be looked for.
+pub(super) const UNKNOWN: u32 = u32::MAX - 1;
 
 /// Room for loads in a step.
 #[derive(Clone, Debug)]
 pub struct LoadRoom<T, const D: usize> {
-    /// Place in memory of the particles of each body with loads, by number.
+    /// Of each load, where the particle lies in memory that carries each of its points.
     places: Vec<Vec<u32>>,
-    /// Load and point of each of all points, one load after the other.
+    /// Load of each of all points that are here, and its place among that one's, one load after the other.
     pub(super) numbers: Vec<[u32; 2]>,
     /// The points likewise.
     pub(super) points: Vec<LoadedPoint<T, D>>,
+    /// Those of other ranks at nodes that are here, too, by load and number.
+    pub(super) foreign: Vec<ForeignPoint<T, D>>,
     /// What each node takes, for all nodes; those that no load reaches have nothing.
     nodes: Vec<NodeLoad<T, D>>,
     /// Nodes that loads reach.
@@ -74,6 +79,15 @@ pub(super) struct LoadedPoint<T, const D: usize> {
     pub nodes: Vec<LoadedNode<T>>,
 }
 
+/// A point of another rank in a step.
+#[derive(Clone, Debug)]
+pub(super) struct ForeignPoint<T, const D: usize> {
+    /// Its load, and its number among the points of that.
+    pub key: [u32; 2],
+    pub felt: PointForce<T, D>,
+    pub nodes: Vec<LoadedNode<T>>,
+}
+
 /// A node that moves a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LoadedNode<T> {
@@ -87,8 +101,8 @@ pub(super) struct LoadedNode<T> {
 /// What acts on a free rigid body at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct ForceOnBody {
-    /// Place of the point among those of all loads.
-    number: u32,
+    /// The load, and the number of its point.
+    key: [u32; 2],
     /// Index of the body.
     pub body: usize,
     /// The force [N].
@@ -153,23 +167,34 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let loads = self.settings.loads.iter().zip(&mut self.state.loads);
             loads.for_each(|(load, sums)| load.drive(time, sums));
         }
-        let (room, field) = (&mut self.workspace.loads, &mut self.workspace.field);
-        room.nodes.resize(field.nodes.len(), NodeLoad::default());
-        for point in &room.points {
-            for &LoadedNode { index, mirrored, weight } in &point.nodes {
-                let node = &mut room.nodes[index as usize];
+        let count = self.workspace.field.nodes.len();
+        let LoadRoom { numbers, points, foreign, nodes, reached, .. } = &mut self.workspace.loads;
+        nodes.resize(count, NodeLoad::default());
+        let mut load = |felt: &PointForce<T, D>, points: &[LoadedNode<T>]| {
+            for &LoadedNode { index, mirrored, weight } in points {
+                let node = &mut nodes[index as usize];
                 if !std::mem::replace(&mut node.reached, true) {
-                    room.reached.push(index);
+                    reached.push(index);
                 }
-                node.force += mirror(point.felt.force, mirrored) * weight;
+                node.force += mirror(felt.force, mirrored) * weight;
                 // No less than nothing, where straight lines beyond a particle's reach have turned negative.
-                let springs = point.felt.spring * (dt * dt * weight.abs());
-                node.inertia += point.felt.inertia * weight.abs();
+                let springs = felt.spring * (dt * dt * weight.abs());
+                node.inertia += felt.inertia * weight.abs();
                 node.held_by += springs;
-                let speed = mirror(point.felt.speed, mirrored);
+                let speed = mirror(felt.speed, mirrored);
                 node.momentum += Vector::from_fn(|i| springs[i] * speed[i]);
             }
+        };
+        // In the order of all ranks' points.
+        let mut foreign = foreign.iter().peekable();
+        for (point, &number) in points.iter().zip(numbers.iter()) {
+            let key = key_of(&self.settings.loads, number);
+            while let Some(ForeignPoint { felt, nodes, .. }) = foreign.next_if(|other| other.key < key) {
+                load(felt, nodes);
+            }
+            load(&point.felt, &point.nodes);
         }
+        foreign.for_each(|ForeignPoint { felt, nodes, .. }| load(felt, nodes));
         self.watch.lap("loads", start);
         Ok(())
     }
@@ -179,13 +204,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let LoadRoom { places, outside: OutsideRoom { now, start, values }, .. } = &mut self.workspace.loads;
         let time = self.state.time + 0.5 * dt.f64();
         let mut first = 0;
-        for load in &self.settings.loads {
+        for (load, places) in self.settings.loads.iter().zip(places) {
             let points = first..first + load.points.len();
             first = points.end;
             let Some(function) = load.action.outside().and_then(OutsideValue::function) else { continue };
             let particles = &self.state.bodies[load.body].particles;
             now.clear();
-            now.extend(load.points.iter().map(|point| match places[load.body][point.particle] {
+            now.extend(load.points.iter().zip(places).map(|(point, place)| match *place {
                 NOWHERE => point.position,
                 place => place_of(&particles.get(place as usize), point).space(),
             }));
@@ -228,32 +253,26 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Where the particles that carry points lie in memory.
     fn find_loaded_particles(&mut self) {
-        let (places, bodies) = (&mut self.workspace.loads.places, &self.state.bodies);
-        places.resize_with(bodies.len(), Vec::new);
-        if self.among.is_some() {
-            // Who was with another rank may have come.
-            self.settings.loads.iter().for_each(|load| places[load.body].clear());
-        }
-        for load in self.settings.loads.iter().filter(|load| !load.points.is_empty()) {
-            find_carriers(&mut places[load.body], bodies[load.body].particles.numbers(), &load.points);
+        for (i, load) in self.settings.loads.iter().enumerate() {
+            let places = self.workspace.loads.places_of(i, load);
+            find_carriers(places, self.state.bodies[load.body].particles.numbers(), &load.points);
         }
     }
 
     /// What acts on free rigid bodies, point by point in the order of loads.
     pub(super) fn forces_on_free_bodies(&self) -> Vec<ForceOnBody> {
         let (room, loads, free) = (&self.workspace.loads, &self.settings.loads, &self.settings.free);
-        let points = room.numbers.iter().zip(&room.points).zip(0..);
-        let on_free = points.filter_map(|((&[load, point], loaded), number)| {
-            let load = &loads[load as usize];
-            let carrier = load.points[point as usize].particle;
-            let is_here = free[load.body] && room.places[load.body][carrier] != NOWHERE;
+        let on_free = room.numbers.iter().zip(&room.points).filter_map(|(&number, loaded)| {
+            let [load, point] = number.map(|number| number as usize);
+            let body = loads[load].body;
+            let is_here = free[body] && room.places[load][point] != NOWHERE;
             let (force, place) = (loaded.felt.force.space(), loaded.before.space());
-            is_here.then_some(ForceOnBody { number, body: load.body, force, place })
+            is_here.then(|| ForceOnBody { key: key_of(loads, number), body, force, place })
         });
         let mut forces: Vec<ForceOnBody> = on_free.collect();
         if let Some(among) = &self.among {
             forces = among.gathered(&forces).concat();
-            forces.sort_unstable_by_key(|force| force.number);
+            forces.sort_unstable_by_key(|force| force.key);
         }
         forces
     }
@@ -273,9 +292,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let time = (time, time + ahead.map_or(0.0, |ahead| ahead.f64()), dt.f64());
         each(&mut room.points, POINTS, |i, loaded| {
             let [number, point] = numbers[i].map(|number| number as usize);
-            let (load, point) = (&loads[number], &loads[number].points[point]);
-            let body = &bodies[load.body];
-            let place = places[load.body][point.particle];
+            let (load, place) = (&loads[number], places[number][point]);
+            let (body, point) = (&bodies[load.body], &load.points[point]);
             loaded.nodes.clear();
             if place == NOWHERE {
                 loaded.felt = PointForce::default();
@@ -336,9 +354,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         booked.clear();
         booked.resize(7 * count, ExactSum::default());
         let mut rest = &self.workspace.loads.points[..];
-        for (load, sums) in self.settings.loads.iter().zip(middles.as_chunks_mut().0) {
+        let of_loads = self.settings.loads.iter().zip(&self.workspace.loads.places);
+        for ((load, places), sums) in of_loads.zip(middles.as_chunks_mut().0) {
             let points = rest.split_off(..load.points.len()).expect("each load has its points");
-            add_middle((load, points), &self.workspace.loads.places[load.body], sums);
+            add_middle((load, points), places, sums);
         }
         self.add_up(&mut middles);
         let room = &self.workspace.loads;
@@ -346,14 +365,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let half = if room.late { T::HALF } else { -T::HALF };
         let mut rest = &room.points[..];
         let of_loads = middles.as_chunks().0.iter().zip(booked.as_chunks_mut::<7>().0);
-        for (load, (middle, sums)) in self.settings.loads.iter().zip(of_loads) {
+        for ((load, places), (middle, sums)) in self.settings.loads.iter().zip(&room.places).zip(of_loads) {
             let body = &self.state.bodies[load.body];
             let points = rest.split_off(..load.points.len()).expect("each load has its points");
             let center = middle_of(middle);
             let [impulse_x, impulse_y, impulse_z, moment_x, moment_y, moment_z, work] = sums;
-            for (point, loaded) in load.points.iter().zip(points) {
+            for ((point, &place), loaded) in load.points.iter().zip(places).zip(points) {
                 let LoadedPoint { felt, before, begun, nodes } = loaded;
-                let place = room.places[load.body][point.particle];
                 if place == NOWHERE {
                     continue;
                 }
@@ -406,35 +424,30 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// How far the points of a load are from where they were, the mean over those that are there [m].
     pub(super) fn load_displacement(&self, load: &LoadPoints) -> [f64; 3] {
         let particles = &self.state.bodies[load.body].particles;
-        let mut wanted: Vec<_> = load.points.iter().map(|point| (point.particle as u32, point)).collect();
-        wanted.sort_by_key(|(number, _)| *number);
+        let mut places = Vec::new();
+        find_carriers(&mut places, particles.numbers(), &load.points);
         // Places, measures, and how many.
         let mut sums = [0; 5].map(|_| ExactSum::default());
         let [sum @ .., measure, count] = &mut sums;
-        for (place, number) in particles.numbers().iter().enumerate() {
-            let first = wanted.partition_point(|(wanted, _)| wanted < number);
-            let here = wanted[first..].iter().take_while(|(wanted, _)| wanted == number);
-            for (_, point) in here {
-                let particle = particles.get(place);
-                let now = place_of(&particle, point).space();
-                (0..D).for_each(|i| sum[i].add(point.measure * (now[i] - load.start(point)[i])));
-                measure.add(point.measure);
-                count.add(1.0);
-            }
+        for (point, &place) in load.points.iter().zip(&places).filter(|(_, place)| **place != NOWHERE) {
+            let now = place_of(&particles.get(place as usize), point).space();
+            (0..D).for_each(|i| sum[i].add(point.measure * (now[i] - load.start(point)[i])));
+            measure.add(point.measure);
+            count.add(1.0);
         }
         self.add_up(&mut sums);
         let [sum @ .., measure, count] = sums.each_ref().map(ExactSum::value);
-        let measure = if count == load.points.len() as f64 { load.measure } else { measure };
+        let measure = if count == load.count as f64 { load.measure } else { measure };
         if count == 0.0 { [0.0; 3] } else { sum.map(|sum| sum / measure) }
     }
 }
 
 impl<T, const D: usize> Default for LoadRoom<T, D> {
     fn default() -> Self {
-        let (places, numbers, points) = (Vec::new(), Vec::new(), Vec::new());
+        let (places, numbers, points, foreign) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (nodes, reached, outside) = (Vec::new(), Vec::new(), OutsideRoom::default());
         let (middles, booked) = (Vec::new(), Vec::new());
-        LoadRoom { places, numbers, points, nodes, reached, late: false, middles, booked, outside }
+        LoadRoom { places, numbers, points, foreign, nodes, reached, late: false, middles, booked, outside }
     }
 }
 
@@ -446,20 +459,43 @@ impl<T: Real, const D: usize> LoadRoom<T, D> {
                 *node = NodeLoad::default();
             }
         }
-        let count = loads.iter().map(|load| load.points.len()).sum();
-        if self.points.len() != count {
-            let numbers =
-                |(i, load): (usize, &LoadPoints)| (0..load.points.len()).map(move |p| [i as u32, p as u32]);
-            self.numbers = loads.iter().enumerate().flat_map(numbers).collect();
-            self.points.resize(
-                count,
-                LoadedPoint {
-                    felt: PointForce::default(),
-                    before: Vector::ZERO,
-                    begun: Vector::ZERO,
-                    nodes: Vec::new(),
-                },
-            );
+        let numbers =
+            |(i, load): (usize, &LoadPoints)| (0..load.points.len()).map(move |p| [i as u32, p as u32]);
+        self.numbers.clear();
+        self.numbers.extend(loads.iter().enumerate().flat_map(numbers));
+        self.points.resize(
+            self.numbers.len(),
+            LoadedPoint {
+                felt: PointForce::default(),
+                before: Vector::ZERO,
+                begun: Vector::ZERO,
+                nodes: Vec::new(),
+            },
+        );
+    }
+
+    /// Where the particles lie that carry the points of a load, which is at this place among all, as far as known.
+    pub(super) fn places_of(&mut self, i: usize, load: &LoadPoints) -> &mut Vec<u32> {
+        if self.places.len() <= i {
+            self.places.resize_with(i + 1, Vec::new);
+        }
+        let places = &mut self.places[i];
+        if places.len() != load.points.len() {
+            places.clear();
+            places.resize(load.points.len(), UNKNOWN);
+        }
+        places
+    }
+
+    /// Takes note that particles of a body have moved in memory, each from one place to another.
+    pub(super) fn follow(&mut self, loads: &[LoadPoints], (body, moves): (usize, &[[u32; 2]])) {
+        let Some(&[first, _]) = moves.first() else { return };
+        let of_body = loads.iter().zip(&mut self.places).filter(|(load, _)| load.body == body);
+        // They come from behind all that stay, in ascending order.
+        for place in of_body.flat_map(|(_, places)| places).filter(|place| **place >= first) {
+            if let Ok(at) = moves.binary_search_by_key(place, |[from, _]| *from) {
+                *place = moves[at][1];
+            }
         }
     }
 }
@@ -490,21 +526,45 @@ impl<T: Real, const D: usize> NodeLoad<T, D> {
     }
 }
 
-/// Where the particles of a body that carry points lie in memory, by number, from the numbers in the order of memory;
-/// [`NOWHERE`] for those that have left the domain.
+/// The load of a point and its number among all points of that, by its place among those here.
+fn key_of(loads: &[LoadPoints], [load, point]: [u32; 2]) -> [u32; 2] {
+    [load, loads[load as usize].points[point as usize].number]
+}
+
+/// Particles of a body for one that is looked for among them from the end on, where it has just come.
+const MANY: usize = 16;
+
+/// Where the particles of a body lie in memory that carry points, from the numbers in the order of memory; [`NOWHERE`]
+/// for those that have left the domain. What is known of them may be out of date, or not there.
 pub(super) fn find_carriers(places: &mut Vec<u32>, numbers: &[u32], points: &[PartPoint]) {
-    let lies = |number: usize| {
-        places
-            .get(number)
-            .is_some_and(|&place| place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32)))
+    places.resize(points.len(), UNKNOWN);
+    let is_lost = |(place, point): (&u32, &PartPoint)| {
+        *place != NOWHERE && numbers.get(*place as usize) != Some(&point.particle)
     };
-    if !points.iter().all(|point| lies(point.particle)) {
-        let points = points.iter().map(|point| point.particle);
-        let most = points.chain(numbers.iter().map(|&number| number as usize)).max();
-        places.clear();
-        places.resize(most.map_or(0, |most| most + 1), NOWHERE);
-        for (place, &number) in numbers.iter().enumerate() {
-            places[number as usize] = place as u32;
+    let known = places.iter().zip(points).zip(0..);
+    let lost = known.filter(|(known, _)| is_lost(*known)).map(|((_, point), i)| (point.particle, i));
+    let mut lost: Vec<(u32, usize)> = lost.collect();
+    lost.sort_unstable();
+    lost.iter().for_each(|&(_, i)| places[i] = NOWHERE);
+    let mut found = 0;
+    let find = |place: u32| {
+        let number = numbers[place as usize];
+        let first = lost.partition_point(|(wanted, _)| *wanted < number);
+        for &(_, i) in lost[first..].iter().take_while(|(wanted, _)| *wanted == number) {
+            places[i] = place;
+            found += 1;
+        }
+        found < lost.len()
+    };
+    if MANY * lost.len() < numbers.len() {
+        (0..numbers.len() as u32).rev().all(find);
+        return;
+    }
+    let mut order = by_number(numbers).into_iter().peekable();
+    for (wanted, i) in lost {
+        while order.next_if(|&place| numbers[place as usize] < wanted).is_some() {}
+        if let Some(&place) = order.peek().filter(|place| numbers[**place as usize] == wanted) {
+            places[i] = place;
         }
     }
 }
@@ -537,8 +597,8 @@ fn add_middle<T: Real, const D: usize>(
     places: &[u32],
     [x, y, z, measure]: &mut [ExactSum; 4],
 ) {
-    let there = load.points.iter().zip(points).filter(|(point, _)| places[point.particle] != NOWHERE);
-    for (point, loaded) in there {
+    let there = load.points.iter().zip(places).zip(points).filter(|((_, place), _)| **place != NOWHERE);
+    for ((point, _), loaded) in there {
         let place = loaded.before.space();
         [&mut *x, y, z].into_iter().zip(place).for_each(|(sum, x)| sum.add(x * point.measure));
         measure.add(point.measure);

@@ -28,6 +28,7 @@ mod account;
 mod among;
 mod average;
 mod build;
+mod carrying;
 mod cpu;
 mod glue;
 mod gravity;
@@ -64,6 +65,7 @@ pub(crate) use unbounded::particles_around;
 pub(crate) use walls::WallSums;
 
 use crate::basis::Basis;
+use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::contact::ContactUse;
 use crate::door::{RestoreError, SavedColumn, SavedShare, SavedState, Simulation, StepError, WriteError};
@@ -72,7 +74,7 @@ use crate::scene::{StartVelocities, StressUpdate};
 use crate::threads::each;
 use crate::transfer::Share;
 use account::{Interpolated, StepSums};
-use among::Among;
+use among::{Among, Kinds};
 use state::{Settings, State, Workspace};
 use std::marker::PhantomData;
 use std::sync::PoisonError;
@@ -84,10 +86,12 @@ pub struct Engine<T, const D: usize, B> {
     state: State<T, D>,
     workspace: Workspace<T, D>,
     /// The state before the last step, of simulations that take failed steps again.
-    held: Option<State<T, D>>,
+    held: Option<hold::Held<T, D>>,
     watch: Stopwatch,
     /// The ranks that share the simulation, if there are any.
     among: Option<Among<T>>,
+    /// Of one of several ranks, what it knows of bodies of which it has nothing.
+    kinds: Option<Kinds<T, D>>,
     basis: PhantomData<B>,
 }
 
@@ -251,7 +255,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         let boundary = if tallies { boundary.tallied() } else { boundary };
         self.workspace = Workspace::new(boundary, self.settings.lattice.periods);
         // The lists that knew which had some are gone.
-        self.state.bodies.iter_mut().for_each(|body| body.particles.dismiss_guests());
+        let here = self.state.bodies.iter_mut().filter_map(Body::here_mut);
+        here.for_each(|body| body.particles.dismiss_guests());
         self.watch_borders();
     }
 
@@ -268,7 +273,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
     }
 
     fn settle(&mut self) {
-        each(&mut self.state.bodies, 1, |_, body| body.particles.settle());
+        each(&mut self.state.bodies, 1, |_, body| {
+            body.here_mut().into_iter().for_each(|body| body.particles.settle());
+        });
     }
 
     fn write(&mut self, body: usize, name: &str, values: &[f64]) -> Result<(), WriteError> {

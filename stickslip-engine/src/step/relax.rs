@@ -87,7 +87,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     fn stop(&mut self) {
         self.state.damping += self.energies()[0];
         each(&mut self.state.bodies, 1, |_, body| {
-            if !body.is_rigid() {
+            if let Some(body) = body.here_mut().filter(|body| !body.is_rigid()) {
                 body.particles.stop();
             }
         });

@@ -11,12 +11,12 @@
 //! and as long as it was, however stiff a spring. One spring follows another.
 
 use super::Engine;
-use super::loads::{NOWHERE, find, find_carriers, mirror};
+use super::loads::{NOWHERE, find, mirror};
 use crate::basis::Basis;
 use crate::exact::ExactSum;
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::load::{SpringPoints, nodes_of, place_of};
+use crate::load::{nodes_of, place_of};
 use crate::part::{PartPoint, PartPoints};
 use crate::tensor::Vector;
 use std::time::Instant;
@@ -30,8 +30,16 @@ pub struct SpringRoom<T, const D: usize> {
     /// Place in memory of the particles of each body at which springs end, by number.
     places: Vec<Vec<u32>>,
     springs: Vec<SpringStep>,
-    /// Nodes of the parts of one spring, with g_i.
-    nodes: [PartNodes<T, D>; 2],
+    /// Nodes of the parts of all springs, with g_i.
+    nodes: Vec<PartNodes<T, D>>,
+}
+
+/// Where a spring is.
+struct Line {
+    /// Of its two parts [m].
+    centers: [[f64; 3]; 2],
+    /// From the second to the first.
+    direction: Vector<f64, 3>,
 }
 
 /// What a spring does in a step.
@@ -51,7 +59,7 @@ struct SpringStep {
 
 impl<T, const D: usize> Default for SpringRoom<T, D> {
     fn default() -> Self {
-        SpringRoom { places: Vec::new(), springs: Vec::new(), nodes: [Vec::new(), Vec::new()] }
+        SpringRoom { places: Vec::new(), springs: Vec::new(), nodes: Vec::new() }
     }
 }
 
@@ -66,33 +74,35 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (dt, ahead) = (dt.f64(), ahead.unwrap_or(T::ZERO));
         self.find_spring_carriers();
         let mut room = std::mem::take(&mut self.workspace.springs);
-        room.springs.resize(self.settings.springs.len(), SpringStep::default());
-        for i in 0..self.settings.springs.len() {
-            room.springs[i] = self.pull(i, (dt, ahead), (&room.places, &mut room.nodes));
+        let centers = self.centers(&room.places);
+        let directions: Vec<Option<Vector<f64, 3>>> = centers.iter().map(direction).collect();
+        self.find_nodes((&directions, &room.places), &mut room.nodes);
+        room.springs.clear();
+        let of_springs = centers.into_iter().zip(directions).zip(room.nodes.as_chunks().0).enumerate();
+        for (number, ((centers, direction), nodes)) in of_springs {
+            let line = centers.zip(direction).map(|(centers, direction)| Line { centers, direction });
+            let step = line.map(|line| self.pull(number, (dt, ahead), (line, nodes)));
+            room.springs.push(step.unwrap_or_default());
         }
         self.workspace.springs = room;
         self.watch.lap("springs", start);
     }
 
+    /// A spring along a line.
     fn pull(
         &mut self,
         number: usize,
         (dt, ahead): (f64, T),
-        (places, nodes): (&[Vec<u32>], &mut [PartNodes<T, D>; 2]),
+        (Line { centers, direction }, nodes): (Line, &[PartNodes<T, D>; 2]),
     ) -> SpringStep {
         let spring = &self.settings.springs[number];
-        let Some(centers) = self.centers(spring, places) else { return SpringStep::default() };
-        let apart = Vector(std::array::from_fn(|i| centers[0][i] - centers[1][i]));
-        let Some(direction) = apart.direction() else { return SpringStep::default() };
         let (mut rate, mut yields, mut driven) = (0.0, 0.0, 0.0);
         // Of the nodes: of each that several ranks have, one.
         let mut sums = [0; 3].map(|_| ExactSum::default());
         for side in 0..2 {
             let end = &spring.ends[side];
-            let along = direction * if side == 0 { 1.0 } else { -1.0 };
-            let body = &self.state.bodies[end.body];
-            nodes[side].clear();
-            if let Some(motion) = &body.motion {
+            let along = along(direction, side);
+            if let Some(motion) = &self.state.bodies[end.body].motion {
                 let speed = Vector(motion.velocity_at(centers[side])).dot(along);
                 rate += speed;
                 if motion.as_free().is_some() {
@@ -103,8 +113,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 }
                 continue;
             }
-            let along = Vector::<T, D>::of(along.0);
-            self.find_nodes((end, &places[end.body]), along, &mut nodes[side]);
             let [of_rate, of_gone, of_yields] = &mut sums;
             for (index, pull) in &nodes[side] {
                 let (_, block) = self.workspace.active.slots[*index as usize / nodes_per_block(D)];
@@ -123,8 +131,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let stretch = spring.drawn + self.state.springs[number].way + gone - spring.rest;
         let force = -(spring.stiffness * stretch + spring.dashpot * rate) * softer;
         for (side, nodes) in nodes.iter().enumerate() {
-            let along = direction * if side == 0 { 1.0 } else { -1.0 };
-            let (body, impulse) = (spring.ends[side].body, along * (dt * force));
+            let (body, impulse) = (spring.ends[side].body, along(direction, side) * (dt * force));
             self.workspace.mechanism.push(&mut self.state.bodies, (body, dt), (centers[side], impulse.0));
             for (index, pull) in nodes {
                 let node = &mut self.workspace.field.nodes[*index as usize];
@@ -134,57 +141,72 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         SpringStep { direction: direction.0, force, stiffness: spring.stiffness * softer, driven, gone }
     }
 
-    /// The nodes that move the mean place of a part, each with g_i along a direction.
+    /// The ends of all springs, two of each.
+    fn ends(&self) -> impl Iterator<Item = &PartPoints> {
+        self.settings.springs.iter().flat_map(|spring| &spring.ends)
+    }
+
+    /// The nodes that move the mean places of ends, each with g_i along the direction of its spring.
     fn find_nodes(
         &self,
-        (end, places): (&PartPoints, &[u32]),
-        along: Vector<T, D>,
-        nodes: &mut PartNodes<T, D>,
+        (directions, places): (&[Option<Vector<f64, 3>>], &[Vec<u32>]),
+        nodes: &mut Vec<PartNodes<T, D>>,
     ) {
         let (active, boundary) = (&self.workspace.active, &self.workspace.boundary);
         let n = nodes_per_block(D);
-        let mut found: Vec<(u32, [i32; 3], [f64; 3])> = Vec::new();
-        for (point, number) in end.points.iter().zip(0..) {
-            let particles = &self.state.bodies[end.body].particles;
-            let place = match places[point.particle] {
-                // Another rank has it.
-                NOWHERE => continue,
-                place => place as usize,
-            };
-            let (lattice, seen) = (&self.settings.lattice, (&particles.get(place), &particles.edges(place)));
-            let share = T::of(point.measure / end.measure);
-            for (node, [_, weight]) in nodes_of::<T, D, B>(lattice, seen, point) {
-                let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };
-                if self.workspace.field.nodes[index as usize].mass > T::ZERO {
-                    let pull = mirror(along, mirrored) * (weight * share);
-                    if self.among.is_none() {
-                        nodes.push((index, pull));
-                        continue;
+        nodes.resize_with(2 * directions.len(), Vec::new);
+        nodes.iter_mut().for_each(Vec::clear);
+        // Of each point of each end the nodes with what they feel of it.
+        let mut found: Vec<([u32; 2], [i32; 3], [f64; 3])> = Vec::new();
+        for (e, end) in self.ends().enumerate() {
+            let body = &self.state.bodies[end.body];
+            let Some(direction) = directions[e / 2].filter(|_| !body.is_rigid()) else { continue };
+            let along = Vector::<T, D>::of(along(direction, e % 2).0);
+            for (point, number) in end.points.iter().zip(0..) {
+                let place = match places[end.body][point.particle as usize] {
+                    // Another rank has it.
+                    NOWHERE => continue,
+                    place => place as usize,
+                };
+                let seen = (&body.particles.get(place), &body.particles.edges(place));
+                let share = T::of(point.measure / end.measure);
+                for (node, [_, weight]) in nodes_of::<T, D, B>(&self.settings.lattice, seen, point) {
+                    let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };
+                    if self.workspace.field.nodes[index as usize].mass > T::ZERO {
+                        let pull = mirror(along, mirrored) * (weight * share);
+                        if self.among.is_none() {
+                            nodes[e].push((index, pull));
+                            continue;
+                        }
+                        let (_, block) = active.slots[index as usize / n];
+                        let node: [i32; D] = node_at(block, index as usize % n);
+                        let node = std::array::from_fn(|k| if k < D { node[k] } else { 0 });
+                        found.push(([e as u32, number], node, pull.space()));
                     }
-                    let (_, block) = active.slots[index as usize / n];
-                    let node: [i32; D] = node_at(block, index as usize % n);
-                    let node = std::array::from_fn(|k| if k < D { node[k] } else { 0 });
-                    found.push((number, node, pull.space()));
                 }
             }
         }
         if let Some(among) = &self.among {
             let mut all = among.gathered(&found).concat();
-            all.sort_by_key(|(number, ..)| *number);
-            nodes.extend(all.into_iter().filter_map(|(_, node, pull)| {
+            all.sort_by_key(|(key, ..)| *key);
+            for ([e, _], node, pull) in all {
+                let body = self.settings.springs[e as usize / 2].ends[e as usize % 2].body;
                 // One without mass is beyond what this rank has of the block.
-                let index = active.node_index(end.body, std::array::from_fn(|k| node[k]))?;
-                (self.workspace.field.nodes[index].mass > T::ZERO).then(|| (index as u32, Vector::of(pull)))
-            }));
-        }
-        nodes.sort_by_key(|(index, _)| *index);
-        nodes.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            if same {
-                kept.1 += next.1;
+                let index = active.node_index(body, std::array::from_fn(|k| node[k]));
+                let index = index.filter(|&index| self.workspace.field.nodes[index].mass > T::ZERO);
+                nodes[e as usize].extend(index.map(|index| (index as u32, Vector::of(pull))));
             }
-            same
-        });
+        }
+        for nodes in nodes {
+            nodes.sort_by_key(|(index, _)| *index);
+            nodes.dedup_by(|next, kept| {
+                let same = next.0 == kept.0;
+                if same {
+                    kept.1 += next.1;
+                }
+                same
+            });
+        }
     }
 
     /// Where the particles that carry ends of springs lie in memory.
@@ -215,9 +237,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return;
         }
         let (room, dt) = (&self.workspace.springs, dt.f64());
-        for (i, (spring, step)) in self.settings.springs.iter().zip(&room.springs).enumerate() {
-            let length = self.length(spring, &room.places);
-            let sums = &mut self.state.springs[i];
+        let lengths = self.centers(&room.places).into_iter().map(length);
+        let of_springs = lengths.zip(&self.settings.springs).zip(&room.springs).zip(&mut self.state.springs);
+        for (((length, spring), step), sums) in of_springs {
             let Some(length) = length else { continue };
             let way = length - spring.drawn;
             let change = way - sums.way;
@@ -230,44 +252,78 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Measures springs where bodies begin.
     pub(super) fn begin_springs(&mut self) {
         self.find_spring_carriers();
-        for i in 0..self.settings.springs.len() {
-            let (spring, places) = (&self.settings.springs[i], &self.workspace.springs.places);
-            self.state.springs[i].way =
-                self.length(spring, places).map_or(0.0, |length| length - spring.drawn);
+        let lengths = self.centers(&self.workspace.springs.places).into_iter().map(length);
+        for ((length, spring), sums) in lengths.zip(&self.settings.springs).zip(&mut self.state.springs) {
+            sums.way = length.map_or(0.0, |length| length - spring.drawn);
         }
     }
 
-    /// Mean places of the parts of a spring now [m]; `None` once a particle that carries one has left the domain: the
-    /// spring lets go.
-    fn centers(&self, spring: &SpringPoints, places: &[Vec<u32>]) -> Option<[[f64; 3]; 2]> {
-        let [a, b] = spring.ends.each_ref().map(|end| self.center(end, places));
-        Some([a?, b?])
-    }
-
-    /// The mean place of an end.
-    fn center(&self, end: &PartPoints, places: &[Vec<u32>]) -> Option<[f64; 3]> {
-        let body = &self.state.bodies[end.body];
-        if let Some(motion) = &body.motion {
-            return Some(motion.pose().now(end.center));
+    /// Mean places of the two parts of each spring now [m]; `None` once a particle that carries one has left the
+    /// domain: that spring lets go.
+    fn centers(&self, places: &[Vec<u32>]) -> Vec<Option<[[f64; 3]; 2]>> {
+        let bodies = &self.state.bodies;
+        // Where the points of each end are.
+        let mut found: Vec<([u32; 2], [f64; 3])> = Vec::new();
+        for (end, e) in self.ends().zip(0..).filter(|(end, _)| !bodies[end.body].is_rigid()) {
+            for (point, number) in end.points.iter().zip(0..) {
+                let place = places[end.body][point.particle as usize];
+                if place != NOWHERE {
+                    let particle = bodies[end.body].particles.get(place as usize);
+                    found.push(([e, number], place_of(&particle, point).space()));
+                }
+            }
         }
-        let here = |(number, point): (u32, &PartPoint)| match places[end.body][point.particle] {
-            NOWHERE => None,
-            place => Some((number, place_of(&body.particles.get(place as usize), point).space())),
-        };
-        let mut found: Vec<(u32, [f64; 3])> = (0..).zip(&end.points).filter_map(here).collect();
-        if let Some(among) = &self.among {
+        if let Some(among) = self.among.as_ref().filter(|_| !self.settings.springs.is_empty()) {
             found = among.gathered(&found).concat();
-            found.sort_by_key(|(number, _)| *number);
+            found.sort_by_key(|(key, _)| *key);
         }
-        let share = |(number, place): &(u32, [f64; 3])| {
-            Vector(*place) * (end.points[*number as usize].measure / end.measure)
+        let mut rest = &found[..];
+        let center = |(end, e): (&PartPoints, u32)| {
+            if let Some(motion) = &bodies[end.body].motion {
+                return Some(motion.pose().now(end.center));
+            }
+            let count = rest.iter().take_while(|([of, _], _)| *of == e).count();
+            let points = rest.split_off(..count).expect("so many are left");
+            let share = |([_, number], place): &([u32; 2], [f64; 3])| {
+                Vector(*place) * (end.points[*number as usize].measure / end.measure)
+            };
+            (count == end.points.len()).then(|| points.iter().map(share).sum::<Vector<f64, 3>>().0)
         };
-        (found.len() == end.points.len()).then(|| found.iter().map(share).sum::<Vector<f64, 3>>().0)
+        let centers: Vec<Option<[f64; 3]>> = self.ends().zip(0..).map(center).collect();
+        centers.as_chunks().0.iter().map(|&[a, b]| Some([a?, b?])).collect()
     }
+}
 
-    /// Length of a spring now [m].
-    fn length(&self, spring: &SpringPoints, places: &[Vec<u32>]) -> Option<f64> {
-        let [a, b] = self.centers(spring, places)?;
-        Some((Vector(a) - Vector(b)).norm())
+/// Direction from the second part of a spring to the first.
+fn direction(centers: &Option<[[f64; 3]; 2]>) -> Option<Vector<f64, 3>> {
+    centers.and_then(|[a, b]| (Vector(a) - Vector(b)).direction())
+}
+
+/// Where a spring pushes a part in its direction.
+fn along(direction: Vector<f64, 3>, side: usize) -> Vector<f64, 3> {
+    direction * if side == 0 { 1.0 } else { -1.0 }
+}
+
+/// Length of a spring between such places [m].
+fn length(centers: Option<[[f64; 3]; 2]>) -> Option<f64> {
+    centers.map(|[a, b]| (Vector(a) - Vector(b)).norm())
+}
+
+/// Where the particles of a body that carry points lie in memory, by number, from the numbers in the order of memory;
+/// [`NOWHERE`] for those that have left the domain.
+fn find_carriers(places: &mut Vec<u32>, numbers: &[u32], points: &[PartPoint]) {
+    let lies = |number: usize| {
+        places
+            .get(number)
+            .is_some_and(|&place| place == NOWHERE || numbers.get(place as usize) == Some(&(number as u32)))
+    };
+    if !points.iter().all(|point| lies(point.particle as usize)) {
+        let points = points.iter().map(|point| point.particle as usize);
+        let most = points.chain(numbers.iter().map(|&number| number as usize)).max();
+        places.clear();
+        places.resize(most.map_or(0, |most| most + 1), NOWHERE);
+        for (place, &number) in numbers.iter().enumerate() {
+            places[number as usize] = place as u32;
+        }
     }
 }

@@ -81,9 +81,9 @@ pub struct State<T, const D: usize> {
     pub joints: Vec<JointSums>,
     /// What rigid bodies pushed each other with in the last step.
     pub touch_forces: Vec<TouchForce>,
-    /// What left the domain with particles since the start, body by body.
+    /// What left the domain with particles since the start, body by body; empty until something does.
     pub removed: Vec<RemovedParticles>,
-    /// What was written to particles between steps since the start, body by body.
+    /// What was written to particles between steps since the start, body by body; empty until something is.
     pub written: Vec<WrittenValues>,
     /// What springs did since the start, on the first of their bodies.
     pub springs: Vec<JointSums>,

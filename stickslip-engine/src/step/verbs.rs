@@ -434,7 +434,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The error that a fault is.
     pub(super) fn error(&self, report: &FaultReport) -> StepError {
         let &FaultReport { body, number, kind, position, determinant } = report;
-        let (body, time) = (self.state.bodies[body].name.clone(), self.state.time);
+        let (body, time) = (self.name_of(body).to_string(), self.state.time);
         match kind {
             FaultKind::Inverted => StepError::Inverted { body, number, position, time, determinant },
             FaultKind::Escaped => {

@@ -109,7 +109,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     pub(super) fn totals(&self) -> Arc<[Totals]> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let bodies = &self.state.bodies;
-        let sum = |range: Range<usize>| Body::totals(&bodies[range.start]);
+        let sum = |range: Range<usize>| bodies[range.start].totals();
         known
             .get_or_insert_with(|| match &self.among {
                 Some(among) => among.totals(bodies),
@@ -230,26 +230,27 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn ledger(&self) -> Ledger {
         let all_removed = &self.state.removed;
-        let removed = |of: fn(&RemovedParticles) -> f64| all_removed.iter().map(of).sum::<f64>();
+        // A sum of nothing is 0, without a sign.
+        let removed =
+            |of: &dyn Fn(&RemovedParticles) -> f64| all_removed.iter().map(of).fold(0.0, |sum, x| sum + x);
         let mut ledger = Ledger {
             friction: self.state.contact_sums.friction,
             external_work: self.state.contact_sums.work
                 + self.state.gravity_work
                 + loads::work(&self.state.loads)
                 + self.state.joints.iter().chain(&self.state.springs).map(|joint| joint.work).sum::<f64>()
-                + self.state.written.iter().map(|written| written.energy).sum::<f64>()
-                - removed(|removed| removed.energy),
+                + self.state.written.iter().fold(0.0, |sum, written| sum + written.energy)
+                - removed(&|removed| removed.energy),
             adhesion: self.state.contact_sums.adhesion,
             damping: self.state.damping,
             impacts: self.state.impacts,
             scaled_impulses: self.state.contact_sums.scaled,
             unsettled_nodes: self.state.contact_sums.unsettled,
-            plastic: removed(|removed| removed.plastic),
-            removed_mass: removed(|removed| removed.mass),
-            removed_energy: removed(|removed| removed.energy),
-            removed_momentum: [0, 1, 2].map(|i| all_removed.iter().map(|removed| removed.momentum[i]).sum()),
-            removed_angular_momentum: [0, 1, 2]
-                .map(|i| all_removed.iter().map(|removed| removed.angular_momentum[i]).sum()),
+            plastic: removed(&|removed| removed.plastic),
+            removed_mass: removed(&|removed| removed.mass),
+            removed_energy: removed(&|removed| removed.energy),
+            removed_momentum: [0, 1, 2].map(|i| removed(&|removed| removed.momentum[i])),
+            removed_angular_momentum: [0, 1, 2].map(|i| removed(&|removed| removed.angular_momentum[i])),
             ..Ledger::default()
         };
         let gravity = Vector::<T, D>::of(self.settings.gravity.constant().unwrap_or_default()).space();
@@ -327,7 +328,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     }
 
     fn removed(&self) -> Vec<RemovedParticles> {
-        if self.removes_leavers() { self.state.removed.clone() } else { Vec::new() }
+        let mut all = self.state.removed.clone();
+        let count = if self.removes_leavers() { self.state.bodies.len() } else { 0 };
+        all.resize(count, RemovedParticles::default());
+        all
     }
 
     fn written(&self) -> Vec<WrittenValues> {

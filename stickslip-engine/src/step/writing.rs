@@ -3,7 +3,7 @@
 use super::Engine;
 use super::build::spin;
 use crate::basis::Basis;
-use crate::body::{Body, Totals};
+use crate::body::Totals;
 use crate::door::{NoColumn, View, WRITABLE, WriteError, WrittenValues};
 use crate::lanes::Laned;
 use crate::rigid::{FreeMotion, RigidMotion};
@@ -54,17 +54,23 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
         let gravity = self.settings.gravity.constant().unwrap_or_default();
-        let before = Holding::of_particles(&Body::totals(&self.state.bodies[number]), gravity);
+        let before = Holding::of_particles(&self.state.bodies[number].totals(), gravity);
         let particles = &mut self.state.bodies[number].particles;
         for entry in 0..entries {
             let line = particles.line_mut(first + entry).iter_mut();
             line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
         }
         particles.compare();
-        let after = Holding::of_particles(&Body::totals(&self.state.bodies[number]), gravity);
+        let after = Holding::of_particles(&self.state.bodies[number].totals(), gravity);
+        self.book_written(number, [before, after]);
+        Ok(())
+    }
+
+    /// Books what a body has more.
+    fn book_written(&mut self, number: usize, [before, after]: [Holding; 2]) {
+        self.state.written.resize(self.state.bodies.len(), WrittenValues::default());
         self.state.written[number].take(&before, &after);
         (self.state.signal, self.workspace.totals) = (None, Mutex::default());
-        Ok(())
     }
 
     /// Gives a free rigid body another velocity of its centre, or another spin.
@@ -107,8 +113,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let after = moving.as_free().map(|free| Holding::of_rigid(&moving, free)).expect("it is free");
         body.motion = Some(Box::new(moving));
-        self.state.written[number].take(&before, &after);
-        (self.state.signal, self.workspace.totals) = (None, Mutex::default());
+        self.book_written(number, [before, after]);
         Ok(())
     }
 }

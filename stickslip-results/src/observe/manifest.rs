@@ -5,12 +5,17 @@ use super::folder::OutputFolder;
 use crate::check::Warning;
 use crate::door::{RankShare, RelaxationState};
 use crate::scene::{Loaded, Scene, SceneError, load, parse};
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::Value;
-use std::borrow::Cow;
+use serde_json::value::{RawValue, to_raw_value};
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use std::fmt::{self, Formatter};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// The key of the scene.
+const SCENE: &str = "scene";
 
 /// The record of a run. It is there from the first moment of the run, so that a folder of results is known as one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,8 +86,8 @@ pub struct SceneRecord(Recorded);
 enum Recorded {
     /// Of a run that this process makes: a fraction of what its text would take.
     Here(Arc<Scene>),
-    /// Of a record that was read.
-    Read(Value),
+    /// Of a record that was read: its text, which takes a tenth of the memory.
+    Read(Arc<RawValue>),
 }
 
 impl SceneRecord {
@@ -92,11 +97,66 @@ impl SceneRecord {
     }
 
     /// What it says.
-    pub fn value(&self) -> Cow<'_, Value> {
+    pub fn value(&self) -> Value {
         match &self.0 {
-            Recorded::Here(scene) => Cow::Owned(Manifest::record(scene)),
-            Recorded::Read(value) => Cow::Borrowed(value),
+            Recorded::Here(scene) => Manifest::record(scene),
+            Recorded::Read(text) => {
+                let mut value = serde_json::from_str(text.get()).expect("it was read");
+                replace_control_characters(&mut value);
+                value
+            }
         }
+    }
+}
+
+/// Any JSON, which is read and not kept.
+struct AnyJson;
+
+impl<'de> Deserialize<'de> for AnyJson {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(AnyJson)
+    }
+}
+
+impl<'de> Visitor<'de> for AnyJson {
+    type Value = AnyJson;
+
+    fn expecting(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<AnyJson, E> {
+        Ok(AnyJson)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<AnyJson, E> {
+        Ok(AnyJson)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<AnyJson, E> {
+        Ok(AnyJson)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<AnyJson, E> {
+        Ok(AnyJson)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<AnyJson, E> {
+        Ok(AnyJson)
+    }
+
+    fn visit_unit<E>(self) -> Result<AnyJson, E> {
+        Ok(AnyJson)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<AnyJson, A::Error> {
+        while list.next_element::<AnyJson>()?.is_some() {}
+        Ok(AnyJson)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<AnyJson, A::Error> {
+        while map.next_entry::<AnyJson, AnyJson>()?.is_some() {}
+        Ok(AnyJson)
     }
 }
 
@@ -110,14 +170,16 @@ impl Serialize for SceneRecord {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.0 {
             Recorded::Here(scene) => scene.serialize(serializer),
-            Recorded::Read(value) => value.serialize(serializer),
+            Recorded::Read(_) => self.value().serialize(serializer),
         }
     }
 }
 
 impl<'de> Deserialize<'de> for SceneRecord {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Ok(SceneRecord(Recorded::Read(Value::deserialize(deserializer)?)))
+        let value = Value::deserialize(deserializer)?;
+        let text = to_raw_value(&value).map_err(D::Error::custom)?;
+        Ok(SceneRecord(Recorded::Read(text.into())))
     }
 }
 
@@ -347,9 +409,22 @@ impl Manifest {
     pub fn read(folder: &Path) -> Result<Self, ReadError> {
         let path = folder.join(Self::FILE);
         let read = || -> Result<Manifest, ReadProblem> {
-            let mut record = serde_json::from_slice(&read_bytes(&path)?)?;
+            let mut fields: BTreeMap<String, Box<RawValue>> = serde_json::from_slice(&read_bytes(&path)?)?;
+            let scene = fields.remove(SCENE);
+            for text in &scene {
+                serde_json::from_str::<AnyJson>(text.get())?;
+            }
+            let mut record = Map::new();
+            for (name, text) in fields {
+                record.insert(name, serde_json::from_str(text.get())?);
+            }
+            record.extend(scene.is_some().then(|| (SCENE.to_string(), Value::Null)));
+            let mut record = Value::Object(record);
             replace_control_characters(&mut record);
-            Ok(serde_json::from_value(record)?)
+            let mut manifest: Manifest = serde_json::from_value(record)?;
+            let read = scene.map(|text| SceneRecord(Recorded::Read(text.into())));
+            manifest.scene = read.unwrap_or(manifest.scene);
+            Ok(manifest)
         };
         let manifest = read().map_err(|problem| problem.at(&path))?;
         if manifest.program != "stickslip" {

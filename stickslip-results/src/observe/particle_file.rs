@@ -29,6 +29,27 @@ impl ParticleFile {
         Ok(ParticleFile(PointArrays::open(path)?))
     }
 
+    /// Reads what a file holds, but no column.
+    ///
+    /// # Errors
+    /// As [`ParticleFile::open`].
+    pub fn open_head(path: &Path) -> Result<Self, ReadError> {
+        Ok(ParticleFile(PointArrays::open_head(path)?))
+    }
+
+    /// Reads the packed bytes of one of its pieces, see [`encode_particles`](super::encode_particles).
+    ///
+    /// # Errors
+    /// As [`ParticleFile::open`], or there is no such piece.
+    pub fn open_piece(path: &Path, piece: usize) -> Result<Self, ReadError> {
+        Ok(ParticleFile(PointArrays::open_piece(path, piece)?))
+    }
+
+    /// How many pieces it has.
+    pub fn pieces(&self) -> usize {
+        self.0.pieces()
+    }
+
     /// How many particles it holds.
     pub fn particles(&self) -> usize {
         self.0.count()

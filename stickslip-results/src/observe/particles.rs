@@ -207,7 +207,15 @@ const POSITION: &str = every("position").name;
 /// # Errors
 /// The file is missing, cut short, or was written by another program or without a column.
 pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
-    let file = PointArrays::open(path)?;
+    particles_of(&PointArrays::open(path)?)
+}
+
+/// The same of a piece of the file alone.
+pub(super) fn read_piece(path: &Path, piece: usize) -> Result<ParticleSnapshot, ReadError> {
+    particles_of(&PointArrays::open_piece(path, piece)?)
+}
+
+fn particles_of(file: &PointArrays) -> Result<ParticleSnapshot, ReadError> {
     let [body, number] = IDENTITY;
     let remembered = |name: &str| {
         let (unit, kind, values) = file.described(name)?;
@@ -219,7 +227,7 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
         history: (file.names().filter(|&name| !in_files().any(|known| known == name)))
             .map(remembered)
             .collect::<Result<_, ReadError>>()?,
-        ..ParticleSnapshot::of_columns(file.field("dimension")? as usize, &file)?
+        ..ParticleSnapshot::of_columns(file.field("dimension")? as usize, file)?
     })
 }
 
@@ -368,6 +376,9 @@ mod tests {
             let header = String::from_utf8_lossy(&text[..10_000]).into_owned();
             assert_eq!(header.matches("<Piece ").count(), 2, "{header}");
             assert!(read_particles(&path).unwrap() == written, "{compression:?}");
+            let apart = (0..2).map(|piece| read_piece(&path, piece).unwrap()).collect();
+            assert!(ParticleSnapshot::merged(apart) == written, "{compression:?}");
+            assert!(read_piece(&path, 2).is_err());
             PointArrays::open(&path).unwrap().check().unwrap();
         }
         let nothing = ParticleSnapshot::default();

@@ -59,7 +59,7 @@ impl Results {
     /// # Errors
     /// Another version of the program wrote it.
     pub fn scene(&self) -> Result<RecordedScene, ReadError> {
-        RecordedScene::deserialize(&*self.manifest.scene.value())
+        RecordedScene::deserialize(self.manifest.scene.value())
             .map_err(|error| ReadProblem::from(error).at(&self.folder.join(Manifest::FILE)))
     }
 

@@ -59,17 +59,14 @@ pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
 }
 
 /// How far the displacement of a support is from none at the start, at most over its points [m].
-fn jump(action: &Action, points: impl Iterator<Item = [f64; 3]>) -> f64 {
+fn jump(action: &Action, place: [f64; 3]) -> f64 {
     let Action::Support(support) = action else { return 0.0 };
-    let at = |place: [f64; 3]| {
-        let start = Moment { time: 0.0, place, start: place, ..Moment::default() };
-        let away = support.motion.iter().flatten().map(|motion| match motion {
-            SupportMotion::Displacement(displacement) => displacement.at_moment(&start),
-            SupportMotion::Velocity(_) => 0.0,
-        });
-        away.map(|away| away * away).sum::<f64>().sqrt()
-    };
-    points.map(at).fold(0.0, f64::max)
+    let start = Moment { time: 0.0, place, start: place, ..Moment::default() };
+    let away = support.motion.iter().flatten().map(|motion| match motion {
+        SupportMotion::Displacement(displacement) => displacement.at_moment(&start),
+        SupportMotion::Velocity(_) => 0.0,
+    });
+    away.map(|away| away * away).sum::<f64>().sqrt()
 }
 
 /// A support that jumps: over the cell, this is more than what springs of supports give way by under any sound load.
@@ -136,8 +133,14 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
             return Err(problem("temperature", found, &allowed));
         }
     }
-    let points = part::points(scene, load.body, &load.part);
-    let Some(first) = points.first() else {
+    let (mut first, mut points, mut measure, mut jumps) = (None, 0, 0.0, 0.0_f64);
+    part::visit(scene, load.body, &load.part, &mut |point| {
+        first.get_or_insert(point.position);
+        points += 1;
+        measure += point.measure;
+        jumps = jumps.max(jump(&load.action, point.position));
+    });
+    let Some(first) = first else {
         let part = if load.part.within.is_some() { "within" } else { "on" };
         let nothing = problem(part, format!("no part of body `{}`", body.name), "a part that the body has");
         return Err(Problem {
@@ -148,20 +151,19 @@ fn report(scene: &Scene, load: &Load, key: &str) -> Result<LoadReport, Problem> 
             ..nothing
         });
     };
-    let start = Moment { time: 0.0, place: first.position, start: first.position, ..Moment::default() };
+    let start = Moment { time: 0.0, place: first, start: first, ..Moment::default() };
     if let Some(value) =
         load.action.values().map(|value| value.at_moment(&start)).find(|value| !value.is_finite())
     {
-        let found = format!("{value} at t = 0, x = {:?} m", first.position);
+        let found = format!("{value} at t = 0, x = {first:?} m");
         return Err(Problem { key: key.to_string(), ..problem("", found, "values that are numbers") });
     }
-    let jumps = jump(&load.action, points.iter().map(|point| point.position));
     let axes = scene.dimension.axes() - usize::from(!on_volume);
     Ok(LoadReport {
         name: load.name.clone(),
         body: body.name.clone(),
-        points: points.len(),
-        measure: points.iter().map(|point| point.measure).sum(),
+        points,
+        measure,
         unit: ["m", "m", "m^2", "m^3"][axes],
         jumps,
     })

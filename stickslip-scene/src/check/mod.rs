@@ -66,7 +66,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     precision::check(scene, &extents)?;
     joints::check(scene, &extents)?;
     springs::check(scene)?;
-    (0..scene.bodies.len()).try_for_each(|body| initial_stress::of_body(scene, body).map(|_| ()))?;
+    (0..scene.bodies.len()).try_for_each(|body| initial_stress::check(scene, body))?;
     Ok((extents, loads::check(scene)?))
 }
 
@@ -125,7 +125,7 @@ mod tests {
         scene.outputs.tables = 0.1;
         scene.outputs.particles = None;
         scene.materials = vec![neo_hookean("soft", 1.0), neo_hookean("stiff", 10.0)];
-        scene.bodies = bodies;
+        scene.bodies = bodies.into();
         scene
     }
 

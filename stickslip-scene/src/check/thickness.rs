@@ -179,7 +179,7 @@ mod tests {
         scene.domain = Some(Domain { faces, ..Domain::new([-1.0, 0.0, 0.0], [4.0; 3]) });
         assert_eq!(warning(&scene), None);
         scene.domain = None;
-        scene.bodies = vec![at_rest("half", strip(0.2))];
+        scene.bodies = vec![at_rest("half", strip(0.2))].into();
         assert_eq!(warning(&scene), None);
     }
 }

@@ -5,10 +5,10 @@
 //! files and their schema take them from here.
 
 use super::{
-    BasisKind, Body, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization, Domain,
-    Expression, Face, FreeRigid, Gravity, Health, Leaving, Measurements, NamedMaterial, Normal, Outputs,
-    Precision, Problem, Relaxation, Scene, SeriesFormat, SnapshotContent, StressUpdate, Time, Transfer,
-    VolumeChange,
+    BasisKind, Body, BodyList, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization,
+    Domain, Expression, Face, FreeRigid, Gravity, Health, Leaving, Measurements, NamedMaterial, Normal,
+    Outputs, Precision, Problem, Relaxation, Scene, SeriesFormat, SnapshotContent, StressUpdate, Time,
+    Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -42,7 +42,7 @@ impl Scene {
             health: Health::default(),
             gravity: Gravity::default(),
             materials: Vec::new(),
-            bodies: Vec::new(),
+            bodies: BodyList::default(),
             loads: Vec::new(),
             joints: Vec::new(),
             springs: Vec::new(),

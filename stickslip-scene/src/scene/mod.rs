@@ -3,6 +3,7 @@
 //! A scene is plain data. It says nothing about precision of its storage, threads or blocks; the engine is built from
 //! it. Vectors have three components; a plane scene uses the first two and takes the third as zero.
 
+mod body_list;
 mod building;
 mod error;
 mod expression;
@@ -28,6 +29,7 @@ mod springs;
 mod suggestion;
 mod units;
 
+pub use body_list::BodyList;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
 pub use file::{Disk, SceneFiles};
@@ -87,7 +89,7 @@ pub struct Scene {
     /// The materials that bodies name.
     pub materials: Vec<NamedMaterial>,
     /// The bodies, in the order of the file.
-    pub bodies: Vec<Body>,
+    pub bodies: BodyList,
     /// What holds, presses, pulls or drives parts of bodies from outside: supports, then loads.
     pub loads: Vec<Load>,
     /// What joins rigid bodies to each other and to the ground.

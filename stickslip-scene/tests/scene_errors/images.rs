@@ -32,7 +32,7 @@ fn read(dimension: &str, table: &str) -> Result<Vec<String>, String> {
     let scene = format!("{}[[images]]\nname = \"grain\"\nmaterial = \"rubber\"\n{table}\n", &scene[..bodies]);
     let place = format!("{}/", folder.path().display());
     let loaded = scene::parse(&format!("{place}a.toml"), &scene, &[]);
-    let names = |scene: scene::Scene| scene.bodies.into_iter().map(|body| body.name).collect();
+    let names = |scene: scene::Scene| scene.bodies.iter().map(|body| body.name.clone()).collect();
     loaded.map(|loaded| names(loaded.scene)).map_err(|error| error.to_string().replace(&place, ""))
 }
 

@@ -2,17 +2,21 @@
 
 use super::ResumeError;
 use crate::column::{EVERY, HALF_EDGES, optional_in_files};
-use crate::door::{RestoreError, SavedState, View};
+use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation, View};
 use crate::observe::{
-    Checkpoint, Frame, Manifest, Memory, ParticleFile, ReadError, ReadProblem, Results, verify_snapshot,
+    Checkpoint, Frame, Manifest, Memory, ParticleFile, ParticlesThere, ReadError, ReadProblem, Results,
+    begin_on_ranks, state_sum, verify_snapshot,
 };
-use crate::scene::{BodyMotion, Expression, Scene, Start};
+use crate::scene::{BodyMotion, Expression, Scene, Start, StartVelocities};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A state of another run.
 pub(super) struct Origin {
+    /// All of it, or all but the particles.
     pub state: SavedState,
+    /// Where they lie that are not in it.
+    particles: Option<ParticlesThere>,
     /// The file that has it.
     pub from: PathBuf,
     /// Whether that is a snapshot.
@@ -55,10 +59,14 @@ impl Origin {
             true => (Checkpoint::open(&start.from)?, start.from.clone(), Vec::new()),
             false => Checkpoint::newest(&start.from)?,
         };
-        checkpoint.fill(&from)?;
+        // Ranks find theirs for themselves.
+        let particles = checkpoint.particles(&from).filter(|_| !view.shares().is_empty());
+        if particles.is_none() {
+            checkpoint.fill(&from)?;
+        }
         let memory = Some(checkpoint.memory(&from));
         let damaged = damaged.into_iter().map(|error| error.path).collect();
-        Ok(Origin { state: checkpoint.state, from, is_snapshot: false, memory, damaged })
+        Ok(Origin { state: checkpoint.state, particles, from, is_snapshot: false, memory, damaged })
     }
 
     fn of_frame(
@@ -69,13 +77,43 @@ impl Origin {
         verify_snapshot(folder, &frame.path)?;
         let (from, names) = (frame.path.clone(), results.body_names());
         let recorded = RecordedBodies { record: &results.manifest().scene.value(), names };
-        let missing = recorded.missing(scene, &ParticleFile::open(&from)?, view);
+        let missing = recorded.missing(scene, &ParticleFile::open_head(&from)?, view);
         if !missing.is_empty() {
             return Err(ResumeError::Lacks { path: from, missing });
         }
         recorded.compare(scene).map_err(|problem| ResumeError::Begin { path: from.clone(), problem })?;
-        let state = SavedState::of_snapshot(&results.particles(frame)?, frame.time, names);
-        Ok(Origin { state, from, is_snapshot: true, memory: None, damaged: Vec::new() })
+        let (particles, state) = if view.shares().is_empty() {
+            (None, SavedState::of_snapshot(&results.particles(frame)?, frame.time, names))
+        } else {
+            let (particles, there) = ParticlesThere::in_snapshot(&from, names)?;
+            (Some(particles), SavedState::of_frame(frame.time, &there))
+        };
+        Ok(Origin { state, particles, from, is_snapshot: true, memory: None, damaged: Vec::new() })
+    }
+
+    /// Lets bodies begin with it: the [`state_sum`] of what was read.
+    ///
+    /// # Errors
+    /// The particles cannot be read, or bodies of the same names are others.
+    pub(super) fn begin(
+        &self,
+        simulation: &mut dyn Simulation,
+        velocities: StartVelocities,
+    ) -> Result<String, ResumeError> {
+        let (path, from) = (self.from.clone(), (&self.state, velocities));
+        let begun = self.particles.as_ref().and_then(|particles| begin_on_ranks(simulation, from, particles));
+        let problem = match begun {
+            Some(Ok(sum)) => return Ok(sum),
+            Some(Err(NotTakenUp::Unfound(problem))) => {
+                return Err(ReadError { path, problem: ReadProblem::Layout(problem) }.into());
+            }
+            Some(Err(NotTakenUp::Other(problem))) => problem,
+            None => match simulation.begin_from(&self.state, velocities) {
+                Ok(()) => return Ok(state_sum(&self.state)),
+                Err(problem) => problem,
+            },
+        };
+        Err(ResumeError::Begin { path, problem })
     }
 }
 

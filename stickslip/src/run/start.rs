@@ -3,7 +3,7 @@
 use super::ResumeError;
 use super::origin::Origin;
 use crate::door::Simulation;
-use crate::observe::{BegunFrom, Memory, state_sum};
+use crate::observe::{BegunFrom, Memory};
 use crate::scene::{BodyMotion, Scene};
 use std::collections::HashSet;
 use std::fmt::{self, Display, Formatter};
@@ -18,7 +18,7 @@ pub struct CarriedBodies {
     pub rounded: bool,
     /// Simulated time there [s].
     pub time: f64,
-    /// The [`state_sum`] of what was read.
+    /// The [`state_sum`](crate::observe::state_sum) of what was read.
     pub sum: String,
     /// How many bodies begin so, and how many the scene has.
     pub count: [usize; 2],
@@ -49,9 +49,9 @@ pub(super) fn carry(
     simulation: &mut dyn Simulation,
 ) -> Result<Option<(CarriedBodies, Option<Remembered>)>, ResumeError> {
     let Some(start) = scene.start.as_ref().filter(|_| simulation.steps() == 0) else { return Ok(None) };
-    let Origin { state, from, is_snapshot, memory, damaged } = Origin::of(scene, start, &*simulation)?;
-    let begun = simulation.begin_from(&state, start.velocities);
-    begun.map_err(|problem| ResumeError::Begin { path: from.clone(), problem })?;
+    let origin = Origin::of(scene, start, &*simulation)?;
+    let sum = origin.begin(simulation, start.velocities)?;
+    let Origin { state, from, is_snapshot, memory, damaged, .. } = origin;
 
     let names: Vec<String> = state.bodies.iter().map(|body| body.name.clone()).collect();
     let there: HashSet<&str> = names.iter().map(String::as_str).collect();
@@ -70,7 +70,7 @@ pub(super) fn carry(
         from,
         rounded: is_snapshot,
         time: state.time,
-        sum: state_sum(&state),
+        sum,
         count: [carried.len(), scene.bodies.len()],
         new: named(&mut new.into_iter()),
         left_out: names.iter().filter(|name| !here.contains(name.as_str())).cloned().collect(),

@@ -253,7 +253,8 @@ mod tests {
         let scene = || {
             let text = include_str!("../../../stickslip-scene/tests/scenes/rolling.toml");
             let mut scene = crate::scene::parse("rolling.toml", text, &[]).expect("a scene").scene;
-            scene.bodies.push(scene.bodies[0].clone());
+            let again = scene.bodies[0].clone();
+            scene.bodies.push(again);
             scene
         };
         let mut both = WidestContacts::new(&scene(), &patches).bearing();

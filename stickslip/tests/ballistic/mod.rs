@@ -241,7 +241,7 @@ pub fn scene() -> Scene {
             volume_change: Default::default(),
             thermal_expansion: 0.0,
         }],
-        bodies: vec![body("sphere"), body("plane")],
+        bodies: vec![body("sphere"), body("plane")].into(),
         start: None,
         loads: Vec::new(),
         joints: Vec::new(),

@@ -1,7 +1,7 @@
 use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
 use crate::basis::{Cpdi, Cubic, Gimp, Linear};
-use crate::body::{Body, Gyration, Particle};
+use crate::body::{Body, BodyHere, Gyration, Particle};
 use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
 use crate::geometry::{MirroredShape, Shape};
@@ -53,7 +53,7 @@ fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
     particles.deform_domains(0.5);
-    Body {
+    Body::from(BodyHere {
         name: String::new(),
         material: Arc::new(Material::NeoHookean(NeoHookean {
             elastic: Isotropic { bulk_modulus: 1.0, shear_modulus: 1.0 },
@@ -66,7 +66,7 @@ fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
         thickness: Thickness::Moved,
         gyration: Gyration { cell: 0.0, share: 0.0 },
         volume_change: Default::default(),
-    }
+    })
 }
 
 /// The same sums, particle by particle as the equations read, for every image of the node.

@@ -33,6 +33,25 @@ pub struct SharedOut {
     pub homes: Vec<Home>,
 }
 
+impl Walked {
+    /// What they come to, each of which is shown by its place [m]; `None` of a body without bounds.
+    pub fn of(scene: &Scene, body: &scene::Body, look: &mut dyn FnMut([f64; 3])) -> Option<Self> {
+        let all = sites(&body.shape, &scene.lattice(body), body.particles)?;
+        let mut walked = Walked { count: 0, volume: 0.0, center: [0.0; 3], first: None };
+        for ParticleSite { position, volume, .. } in all {
+            look(position);
+            walked.count += 1;
+            walked.volume += volume;
+            walked.first = walked.first.or(Some(position));
+        }
+        for ParticleSite { position, volume, .. } in walk(scene, body) {
+            walked.center =
+                std::array::from_fn(|k| walked.center[k] + position[k] * (volume / walked.volume));
+        }
+        Some(walked)
+    }
+}
+
 /// The particles that fill a body, one after the other; none of a body without bounds.
 pub fn walk<'a>(scene: &Scene, body: &'a scene::Body) -> impl Iterator<Item = ParticleSite> + 'a {
     sites(&body.shape, &scene.lattice(body), body.particles).into_iter().flatten()
@@ -46,19 +65,7 @@ pub fn walk_together(
 ) -> Vec<Option<Walked>> {
     let mut own = Vec::new();
     for (number, body) in scene.bodies.iter().enumerate().skip(ranks.rank()).step_by(ranks.count()) {
-        let Some(all) = sites(&body.shape, &scene.lattice(body), body.particles) else { continue };
-        let mut walked = Walked { count: 0, volume: 0.0, center: [0.0; 3], first: None };
-        for ParticleSite { position, volume, .. } in all {
-            look(number, position);
-            walked.count += 1;
-            walked.volume += volume;
-            walked.first = walked.first.or(Some(position));
-        }
-        for ParticleSite { position, volume, .. } in walk(scene, body) {
-            walked.center =
-                std::array::from_fn(|k| walked.center[k] + position[k] * (volume / walked.volume));
-        }
-        own.push((number, walked));
+        own.extend(Walked::of(scene, body, &mut |place| look(number, place)).map(|walked| (number, walked)));
     }
     let mut all = vec![None; scene.bodies.len()];
     for (number, walked) in gathered(ranks, &own).into_iter().flatten() {

@@ -1,13 +1,18 @@
 //! A step of one of several ranks: what it sends to others, and takes from them.
 
+mod carrying;
 mod filling;
+mod kinds;
 mod loads;
 mod taking_up;
 mod totals;
 
+pub(super) use carrying::Look;
 pub(super) use filling::{SharedOut, Walked, share_out, walk, walk_together};
+pub(super) use kinds::Kinds;
 pub(crate) use taking_up::Find;
 
+use self::loads::LeavingPoints;
 use super::Engine;
 use super::pass::{FaultReport, home};
 use super::walls::WallBooks;
@@ -25,8 +30,8 @@ use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, Shown, number_of, write_number};
 use crate::ranks::{
-    BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up, added, bytes_of, combined, gathered,
-    largest, message_to, read,
+    BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, all_of, bytes_of, combined,
+    gathered, largest, message_to, read,
 };
 use crate::scene::{self, BodyMotion, Face, Load, NamedMaterial, OutsideValue, Problem, Scene};
 use crate::tensor::Real;
@@ -34,6 +39,7 @@ use crate::threads::each_range;
 use crate::transfer::Share;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -298,10 +304,7 @@ impl<T: Laned> Among<T> {
     }
 
     pub fn add_up<'a>(&self, sums: impl Iterator<Item = &'a mut ExactSum>) {
-        let places: Vec<&mut ExactSum> = sums.collect();
-        let mut all: Vec<ExactSum> = places.iter().map(|sum| (**sum).clone()).collect();
-        add_up(&*self.ranks, &mut all);
-        places.into_iter().zip(all).for_each(|(place, sum)| *place = sum);
+        add_up_each(&*self.ranks, sums);
     }
 }
 
@@ -329,6 +332,38 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.watch_borders();
     }
 
+    /// Name of a body, which may be elsewhere.
+    pub(super) fn name_of(&self, body: usize) -> &str {
+        match &self.kinds {
+            Some(kinds) => &kinds.scene.bodies[body].name,
+            None => &self.state.bodies[body].name,
+        }
+    }
+
+    /// Gives a body all that belongs to it, if something of it comes here.
+    pub(super) fn bring(&mut self, body: usize) -> &mut Body<T, D> {
+        let here = &mut self.state.bodies[body];
+        self.kinds.iter().for_each(|kinds| kinds.bring(here, body));
+        here
+    }
+
+    /// A body with all that belongs to it, wherever it is.
+    pub(super) fn brought<'a>(&self, body: &'a Body<T, D>, number: usize) -> Cow<'a, Body<T, D>> {
+        match (body, &self.kinds) {
+            (Body::Elsewhere(_), Some(kinds)) => {
+                let mut body = body.clone();
+                kinds.bring(&mut body, number);
+                Cow::Owned(body)
+            }
+            _ => Cow::Borrowed(body),
+        }
+    }
+
+    /// Keeps next to nothing of a body of which nothing is here.
+    pub(super) fn let_go(&mut self, body: usize) {
+        self.kinds.iter().for_each(|kinds| kinds.let_go(&mut self.state.bodies[body], body));
+    }
+
     /// The blocks that any rank names, and this rank's among them, sorted.
     pub(super) fn blocks_of_all(&self, own: Vec<[i32; D]>) -> Vec<[i32; D]> {
         let Some(among) = &self.among else { return own };
@@ -343,6 +378,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Whether something is so on any rank.
     pub(super) fn on_any_rank(&self, here: bool) -> bool {
         self.among.as_ref().map_or(here, |among| largest(&*among.ranks, f64::from(u8::from(here))) > 0.0)
+    }
+
+    /// What each rank says, for the first; what this one says, where there are no others.
+    pub(super) fn told_first<X: Serialize + DeserializeOwned>(&self, said: X) -> Vec<X> {
+        let Some(among) = &self.among else { return vec![said] };
+        all_of(among.ranks.tell_first(&bytes_of(&said)))
     }
 
     /// How many particles each body has on all ranks.
@@ -439,8 +480,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let abroad = |block: [i32; D]| Some(among.partition.owner(block)).filter(|&owner| owner != rank);
         let gone = self.workspace.active.emigrants(abroad);
         let mut messages: Vec<Message> = Vec::new();
+        let mut points = LeavingPoints::new();
         for of_body in gone.chunk_by(|a, b| a.body == b.body) {
             let body = of_body[0].body;
+            let leavers = of_body.iter().map(|one| (one.rank, one.particle));
+            self.take_points_out(body, leavers, &mut points);
             let particles = &mut self.state.bodies[body].particles;
             let mut by_rank: Vec<(usize, u32)> = of_body.iter().map(|one| (one.rank, one.particle)).collect();
             by_rank.sort_unstable();
@@ -453,10 +497,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(moves.len()));
             let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
             self.workspace.active.renumber(body, &moves, base);
+            self.workspace.loads.follow(&self.settings.loads, (body, &moves));
         }
         for (_, message) in among.ranks.exchange(messages) {
-            let Self { state, workspace, .. } = self;
-            read_particles(&message, &mut state.bodies, &mut |body, first, particles| {
+            let Self { state, workspace, kinds, .. } = self;
+            read_particles(&message, (&mut state.bodies, kinds.as_ref()), &mut |body, first, particles| {
                 let count = particles.len() - first;
                 workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(count));
                 let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
@@ -464,6 +509,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 workspace.active.arrive((body, first..particles.len()), (base, number));
             });
         }
+        self.take_points_in(&*among.ranks, &points);
         self.among = Some(among);
         let bodies = &self.state.bodies;
         self.workspace.active.settle(|body, particle| bodies[body].particles.numbers()[particle])
@@ -482,7 +528,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let changed = own || named != among.named;
         if changed {
             let tiles = named.iter().flat_map(|(from, names)| ForeignTile::read(*from, names));
-            self.workspace.active.cover(&tiles.collect::<Vec<_>>(), rank);
+            let tiles: Vec<ForeignTile> = tiles.collect();
+            self.workspace.active.cover(&tiles, rank);
+            // Surfaces of bodies are known wherever they have nodes.
+            for tile in &tiles {
+                self.bring(tile.body as usize);
+            }
+            if among.moves {
+                let gone = (0..self.state.bodies.len() as u32)
+                    .filter(|body| self.workspace.active.here().binary_search(body).is_err());
+                gone.collect::<Vec<_>>().into_iter().for_each(|body| self.let_go(body as usize));
+            }
             among.named = named;
         }
         self.among = Some(among);
@@ -492,7 +548,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Sends the guests of the step before away.
     pub(super) fn dismiss_guests(&mut self) {
         for host in self.workspace.active.dismiss_guests() {
-            self.state.bodies[host as usize].particles.dismiss_guests();
+            // One that lost its particles with them may have gone.
+            let host = self.state.bodies[host as usize].here_mut();
+            host.into_iter().for_each(|body| body.particles.dismiss_guests());
         }
     }
 
@@ -578,13 +636,14 @@ fn write_particles<T: Real, const D: usize>(
 /// has.
 fn read_particles<T: Real, const D: usize>(
     message: &[u8],
-    bodies: &mut [Body<T, D>],
+    (bodies, kinds): (&mut [Body<T, D>], Option<&Kinds<T, D>>),
     arrived: &mut dyn FnMut(usize, usize, &Particles<T, D>),
 ) {
     let mut rest = message;
     while let Some((body, after)) = split_number(rest)
         && let Some((count, after)) = split_number(after)
     {
+        kinds.into_iter().for_each(|kinds| kinds.bring(&mut bodies[body], body));
         let particles = &mut bodies[body].particles;
         let (bytes, after) = after.split_at(particles.message_bytes(count));
         let first = particles.len();

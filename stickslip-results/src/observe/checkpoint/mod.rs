@@ -23,7 +23,7 @@ use super::file::{
 use super::folder::OutputFolder;
 use super::manifest::SceneRecord;
 use super::memory::{Memory, Values};
-use super::shared;
+use super::shared::{self, ParticlesThere};
 use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -271,6 +271,11 @@ impl Checkpoint {
         fill().map_err(|problem| problem.at(path))
     }
 
+    /// Where the particles lie that the state does not have; none of earlier versions, whose state has all.
+    pub fn particles(&self, path: &Path) -> Option<ParticlesThere> {
+        (!self.sections.is_empty()).then(|| ParticlesThere::in_sections(path, &self.sections))
+    }
+
     /// Lets a simulation of its scene take it up: by each rank some of its particles, where ranks share it.
     ///
     /// # Errors
@@ -280,8 +285,8 @@ impl Checkpoint {
         path: &Path,
         simulation: &mut dyn Simulation,
     ) -> Result<Result<(), RestoreError>, ReadError> {
-        if !self.sections.is_empty()
-            && let Some(restored) = shared::restore(simulation, &self.state, (path, &self.sections))
+        if let Some(particles) = self.particles(path)
+            && let Some(restored) = shared::restore(simulation, &self.state, &particles)
         {
             return match restored {
                 Err(NotTakenUp::Unfound(problem)) => Err(layout(&problem).at(path)),

@@ -3,16 +3,18 @@
 mod joint_file;
 mod question;
 
-pub use question::has_near;
 pub(super) use question::{Asked, Question, answer};
+pub use question::{WantedStarts, cell_of, counts, has_near, starts};
 
 use super::checkpoint::{CheckpointForm, MOST_PARTICLES, START, Section};
-use super::file::FileSum;
-use super::particles::{PieceStart, count_by_stretch, cut, encode_piece, is_chosen};
+use super::file::{FileSum, ReadError};
+use super::particle_file::ParticleFile;
+use super::particles::{PieceStart, count_by_stretch, cut, encode_piece, is_chosen, read_piece};
+use super::state_sum::StateSum;
 use super::vtk::{END, PieceSize};
 use crate::door::{NotTakenUp, ParticleSnapshot, SavedShare, SavedState, Simulation, View};
 use crate::ranks::{Message, Ranks, bytes_of, combined, gathered, message_to, read};
-use crate::scene::SnapshotContent;
+use crate::scene::{SnapshotContent, StartVelocities};
 use joint_file::{JointFile, JointReading, Trouble};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -152,28 +154,118 @@ fn put_sections(
     file.finish([&super::checkpoint::first_line(), &[]], true).map(|_| all)
 }
 
-/// Has ranks take up a state, each some of its particles, which lie in sections of a file. None of a simulation that
-/// nobody shares.
+/// Has ranks take up a state, each some of its particles. None of a simulation that nobody shares.
 pub(super) fn restore(
     simulation: &mut dyn Simulation,
     rest: &SavedState,
-    (path, sections): (&Path, &[Section]),
+    particles: &ParticlesThere,
 ) -> Option<Result<(), NotTakenUp>> {
-    let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
-    simulation.restore_on_ranks(rest, &bytes_of(&(path, sections)))
+    simulation.restore_on_ranks(rest, &bytes_of(particles))
+}
+
+/// Where the particles of a state lie, of which ranks find some each.
+#[derive(Serialize, Deserialize)]
+pub enum ParticlesThere {
+    /// In sections of a checkpoint.
+    Checkpoint(CheckpointPlace),
+    /// In pieces of a snapshot.
+    Snapshot(SnapshotPlace),
+}
+
+/// Sections of a checkpoint.
+#[derive(Serialize, Deserialize)]
+pub struct CheckpointPlace {
+    path: PathBuf,
+    sections: Vec<Section>,
+}
+
+/// Pieces of a snapshot.
+#[derive(Serialize, Deserialize)]
+pub struct SnapshotPlace {
+    path: PathBuf,
+    pieces: usize,
+    /// Of each of its bodies, the place in the state, if that has it.
+    places: Vec<Option<usize>>,
+}
+
+impl ParticlesThere {
+    pub(super) fn in_sections(path: &Path, sections: &[Section]) -> Self {
+        let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        ParticlesThere::Checkpoint(CheckpointPlace { path, sections: sections.to_vec() })
+    }
+
+    /// Those of a snapshot, and its bodies that have particles: `names` are those of all, by their numbers.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn in_snapshot(path: &Path, names: &[String]) -> Result<(Self, Vec<String>), ReadError> {
+        let pieces = ParticleFile::open_head(path)?.pieces();
+        let mut there = vec![false; names.len()];
+        for piece in 0..pieces {
+            for body in ParticleFile::open_piece(path, piece)?.bodies()? {
+                there.get_mut(body as usize).into_iter().for_each(|there| *there = true);
+            }
+        }
+        let mut found = Vec::new();
+        let places = names.iter().zip(there).map(|(name, is_there)| {
+            is_there.then(|| {
+                found.push(name.clone());
+                found.len() - 1
+            })
+        });
+        let places = places.collect();
+        let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        Ok((ParticlesThere::Snapshot(SnapshotPlace { path, pieces, places }), found))
+    }
+}
+
+/// Has ranks begin from the state of another run, of which `rest` is all but particles: the
+/// [`state_sum`](super::state_sum) of that state. None of a simulation that nobody shares.
+///
+/// # Errors
+/// A body of the same name is another one there, or a rank does not find its particles.
+pub fn begin_on_ranks(
+    simulation: &mut dyn Simulation,
+    (rest, velocities): (&SavedState, StartVelocities),
+    particles: &ParticlesThere,
+) -> Option<Result<String, NotTakenUp>> {
+    let mut sum = StateSum::new(rest.bodies.iter().map(|body| &body.name[..]));
+    let add = &mut |body: usize, bytes: &[u8]| sum.add(body, bytes);
+    let begun = simulation.begin_on_ranks((rest, velocities), &bytes_of(particles), add)?;
+    Some(begun.map(|()| sum.finish(rest.time, rest.steps)))
 }
 
 fn find(ranks: &dyn Ranks, asked: &[u8], show: &mut dyn FnMut(Vec<SavedShare>)) -> Result<(), String> {
-    let (path, sections): (PathBuf, Vec<Section>) = read(asked);
     let mut result = Ok(());
-    JointReading::open(ranks, &path).each_share(
-        sections.len(),
-        &|section, file| sections[section].bytes(file),
-        &mut |section, bytes| match bytes.map(|bytes| sections[section].shares(&bytes)) {
-            Ok(Ok(shares)) => show(shares),
-            Ok(Err(problem)) => result = Err(problem.to_string()),
-            Err(told) => result = Err(told),
-        },
-    );
+    let mut take = |shares: Result<Vec<SavedShare>, String>| match shares {
+        Ok(shares) => show(shares),
+        Err(problem) => result = Err(problem),
+    };
+    match read(asked) {
+        ParticlesThere::Checkpoint(CheckpointPlace { path, sections }) => {
+            JointReading::open(ranks, &path).each_share(
+                sections.len(),
+                &|section, file| sections[section].bytes(file),
+                &mut |section, bytes| {
+                    let shares = |bytes: Vec<u8>| {
+                        sections[section].shares(&bytes).map_err(|problem| problem.to_string())
+                    };
+                    take(bytes.and_then(shares));
+                },
+            );
+        }
+        ParticlesThere::Snapshot(SnapshotPlace { path, pieces, places }) => {
+            let shares = |piece: usize| {
+                let particles =
+                    read_piece(&path, piece).map_err(|error| io::Error::other(error.problem.to_string()))?;
+                Ok(bytes_of(&SavedShare::of_snapshot(&particles, &places)))
+            };
+            JointReading::open(ranks, &path).each_share(
+                pieces,
+                &|piece, _| shares(piece),
+                &mut |_, bytes| take(bytes.map(|bytes| read(&bytes))),
+            );
+        }
+    }
     result
 }

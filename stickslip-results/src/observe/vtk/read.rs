@@ -2,14 +2,15 @@
 
 use super::{BLOCK, Scalar};
 use crate::column::Kind;
-use crate::observe::file::{ReadError, ReadProblem, read_bytes};
+use crate::observe::file::{ReadError, ReadProblem, open_file, read_bytes};
 use crate::observe::xml::attribute;
 use flate2::read::ZlibDecoder;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::io::Read as _;
+use std::fs::File;
+use std::io::{Read as _, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// An opened file of points.
@@ -55,7 +56,59 @@ impl PointArrays {
     /// Opens a file and reads what it holds; arrays are unpacked when asked for.
     pub(in crate::observe) fn open(path: &Path) -> Result<Self, ReadError> {
         let bytes = read_bytes(path).map_err(|error| ReadProblem::Io(error).at(path))?;
-        let mut points = PointArrays {
+        let mut points = Self::nothing(path);
+        points.read_header(&bytes).map_err(|problem| problem.at(path))?;
+        points.bytes = bytes;
+        Ok(points)
+    }
+
+    /// Opens a piece of a file by itself: of the others no array is read.
+    pub(in crate::observe) fn open_piece(path: &Path, piece: usize) -> Result<Self, ReadError> {
+        let open = || -> Result<Self, ReadProblem> {
+            let mut file = open_file(path)?;
+            let mut points = Self::head_of(&mut file, path)?;
+            let cut = || missing(&format!("complete piece {piece}"));
+            let all = || points.positions.iter().chain(points.arrays.values());
+            let first = |piece: usize| all().map(|place| place.offsets.get(piece).copied()).min().flatten();
+            let (begin, end) = (first(piece).ok_or_else(cut)?, first(piece + 1));
+            if all().any(|place| place.offsets.len() != points.counts.len()) {
+                return Err(cut());
+            }
+            let start = points.appended.checked_add(begin).ok_or_else(cut)?;
+            file.seek(SeekFrom::Start(start as u64))?;
+            let size = end.map_or(Some(usize::MAX), |end| end.checked_sub(begin)).ok_or_else(cut)?;
+            file.take(size as u64).read_to_end(&mut points.bytes)?;
+            points.counts = vec![points.counts[piece]];
+            for place in points.positions.iter_mut().chain(points.arrays.values_mut()) {
+                place.offsets = vec![place.offsets[piece] - begin];
+            }
+            points.appended = 0;
+            Ok(points)
+        };
+        open().map_err(|problem| problem.at(path))
+    }
+
+    /// Opens a file and reads what it holds, but no array.
+    pub(in crate::observe) fn open_head(path: &Path) -> Result<Self, ReadError> {
+        let open = || Self::head_of(&mut open_file(path)?, path);
+        open().map_err(|problem| problem.at(path))
+    }
+
+    fn head_of(file: &mut File, path: &Path) -> Result<Self, ReadProblem> {
+        let (mut bytes, mut points) = (Vec::new(), Self::nothing(path));
+        loop {
+            let before = bytes.len();
+            let read = file.take(HEAD).read_to_end(&mut bytes)?;
+            // What ends it may lie across what is read at a time.
+            if read == 0 || appended(&bytes[before.saturating_sub(2 * TAG.len())..]).is_some() {
+                points.read_header(&bytes)?;
+                return Ok(points);
+            }
+        }
+    }
+
+    fn nothing(path: &Path) -> Self {
+        PointArrays {
             path: path.to_path_buf(),
             bytes: Vec::new(),
             appended: 0,
@@ -65,19 +118,19 @@ impl PointArrays {
             positions: None,
             arrays: BTreeMap::new(),
             names: Vec::new(),
-        };
-        points.read_header(&bytes).map_err(|problem| problem.at(path))?;
-        points.bytes = bytes;
-        Ok(points)
+        }
+    }
+
+    /// How many pieces the file has.
+    pub(in crate::observe) fn pieces(&self) -> usize {
+        self.counts.len()
     }
 
     fn read_header(&mut self, bytes: &[u8]) -> Result<(), ReadProblem> {
-        let find = |text: &str| bytes.windows(text.len()).position(|window| window == text.as_bytes());
+        let (end, start) = appended(bytes).ok_or_else(|| missing("appended raw data"))?;
+        self.appended = start;
         // The appended data is no XML: the reader must not see it.
-        let appended = find("<AppendedData encoding=\"raw\">").ok_or_else(|| missing("appended raw data"))?;
-        let underscore = bytes[appended..].iter().position(|&byte| byte == b'_');
-        self.appended = appended + underscore.ok_or_else(|| missing("mark before the appended data"))? + 1;
-        let header = str::from_utf8(&bytes[..appended]).map_err(|_| missing("readable header"))?;
+        let header = str::from_utf8(&bytes[..end]).map_err(|_| missing("readable header"))?;
 
         let mut reader = Reader::from_str(header);
         let (mut field, mut section) = (None, String::new());
@@ -275,6 +328,18 @@ impl PointArrays {
         })
         .map_err(|problem| problem.at(&self.path))
     }
+}
+
+/// Bytes of a file that are read at a time until all of its header is there.
+const HEAD: u64 = 1 << 16;
+/// What stands before the mark at which appended data starts.
+const TAG: &[u8] = b"<AppendedData encoding=\"raw\">";
+
+/// Where the header of a file ends that begins with these bytes, and where the appended data starts.
+fn appended(bytes: &[u8]) -> Option<(usize, usize)> {
+    let end = bytes.windows(TAG.len()).position(|window| window == TAG)?;
+    let mark = bytes[end..].iter().position(|&byte| byte == b'_')?;
+    Some((end, end + mark + 1))
 }
 
 /// The packed blocks of an array of `total` bytes with the size of each when unpacked;

@@ -1,7 +1,7 @@
 //! Particles that were neighbours before anything moved: some of each body, chosen once.
 
 use crate::door::{TracedParticle, View};
-use crate::observe::{Memory, OutputError};
+use crate::observe::{Memory, OutputError, WantedStarts, cell_of, counts, starts};
 use crate::scene::Scene;
 use std::collections::{HashMap, HashSet};
 
@@ -27,6 +27,8 @@ const FEWEST: usize = 24;
 const MOST_BODIES: usize = 1 << 14;
 /// Bodies whose particles are asked for at a time.
 const TRACED_AT_A_TIME: usize = 1 << 10;
+/// Bodies whose neighbours are looked for at a time.
+const BODIES_AT_A_TIME: usize = 1 << 8;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
 const NEAR: f64 = 1.5;
 /// Neighbours in each body; none in a rigid one.
@@ -35,17 +37,23 @@ pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
     let deforming = (0..scene.bodies.len()).filter(|&i| !scene.bodies[i].is_rigid());
     let deforming: Vec<usize> = deforming.collect();
     let looked_at = chosen(deforming.len(), MOST_BODIES);
-    let mut extents = vec![Extent::default(); scene.bodies.len()];
-    for body in looked_at.into_iter().map(|place| deforming[place as usize]) {
-        extents[body] = Extent::of(view, body);
+    let looked_at: Vec<usize> = looked_at.into_iter().map(|place| deforming[place as usize]).collect();
+    let extents = looked_at.chunks(BODIES_AT_A_TIME).flat_map(|some| counts(view, some));
+    let extents: Vec<Extent> = extents.map(|(count, end)| Extent { count, end }).collect();
+    let all: usize = extents.iter().map(|extent| extent.count).sum();
+    let mut of_bodies: Vec<Neighbours> = scene.bodies.iter().map(|_| Neighbours::default()).collect();
+    let there = looked_at.into_iter().zip(extents).filter(|(_, extent)| extent.count > 0);
+    let there: Vec<(usize, Extent)> = there.collect();
+    for some in there.chunks(BODIES_AT_A_TIME) {
+        let seeds = some.iter().map(|&(body, extent)| {
+            let wanted = (MOST * extent.count / all).max(FEWEST);
+            (body, extent.numbers_at(chosen(extent.count, wanted), (view, body)))
+        });
+        let seeds: Vec<(usize, Vec<u32>)> = seeds.collect();
+        let found = seeds.iter().zip(Neighbours::around(view, &seeds));
+        found.for_each(|((body, _), neighbours)| of_bodies[*body] = neighbours);
     }
-    let all = extents.iter().map(|extent| extent.count).sum();
-    (extents.into_iter().enumerate())
-        .map(|(i, extent)| match extent.count {
-            0 => Neighbours::default(),
-            _ => Neighbours::new(view, (i, extent), all),
-        })
-        .collect()
+    of_bodies
 }
 
 /// How many particles a body has.
@@ -57,72 +65,67 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(view: &dyn View, body: usize) -> Self {
-        let mut extent = Extent::default();
-        visit_starts(view, body, &mut |number, _| {
-            (extent.count, extent.end) = (extent.count + 1, extent.end.max(number as usize + 1));
-        });
-        extent
-    }
-
     /// The numbers of the particles that stand at some places in the order of numbers.
     fn numbers_at(self, places: Vec<u32>, (view, body): (&dyn View, usize)) -> Vec<u32> {
         if self.end == self.count {
             return places;
         }
         let mut numbers = Vec::with_capacity(self.count);
-        visit_starts(view, body, &mut |number, _| numbers.push(number));
+        // They were counted by this column.
+        let _ = view.visit_column(body, "start", &mut |number, _| numbers.push(number));
         numbers.sort_unstable();
         places.into_iter().map(|place| numbers[place as usize]).collect()
     }
 }
 
-/// Shows where the particles of a body were before anything moved [m]; of a simulation that does not know it none.
-fn visit_starts(view: &dyn View, body: usize, look: &mut dyn FnMut(u32, [f64; 3])) {
-    let mut look = |number: u32, x: &[f64]| look(number, [x[0], x[1], x[2]]);
-    // What has no such column has no neighbours.
-    let _ = view.visit_column(body, "start", &mut look);
+/// The cells at a cell and beside it.
+fn beside([i, j, k]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
+    (0..27).map(move |d: i64| [i + d % 3 - 1, j + d / 3 % 3 - 1, k + d / 9 - 1])
 }
 
 impl Neighbours {
-    fn new(view: &dyn View, (body, extent): (usize, Extent), all: usize) -> Self {
-        let wanted = (MOST * extent.count / all.max(1)).max(FEWEST);
-        let chosen = extent.numbers_at(chosen(extent.count, wanted), (view, body));
-        let seeds: HashSet<u32> = chosen.iter().copied().collect();
-        let traced = view.trace(body, &chosen);
-        let widest = traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max);
-        if widest == 0.0 {
-            return Neighbours::default();
-        }
-        let mut start: HashMap<u32, [f64; 3]> = HashMap::new();
-        visit_starts(view, body, &mut |number, x| {
-            if seeds.contains(&number) {
-                start.insert(number, x);
-            }
-        });
-
+    /// Those of some particles of bodies, by their numbers.
+    fn around(view: &dyn View, seeds: &[(usize, Vec<u32>)]) -> Vec<Self> {
+        let traced = view.trace_each(seeds);
+        let begun = starts(view, with(seeds, |(_, numbers), _| WantedStarts::Numbers(numbers.clone())));
         // Particles by cells as wide as the farthest neighbour, as far as a chosen one is near.
-        let side = 2.0 * NEAR * widest;
-        let cell = |x: [f64; 3]| x.map(|x| (x / side).floor() as i64);
-        let around = |[i, j, k]: [i64; 3]| {
-            let near = move |d: i64| [i + d % 3 - 1, j + d / 3 % 3 - 1, k + d / 9 - 1];
-            (0..27).map(near)
+        let widest = |traced: &Vec<TracedParticle>| {
+            2.0 * NEAR * traced.iter().map(|particle| particle.half_width).fold(0.0, f64::max)
         };
-        let near: HashSet<[i64; 3]> = start.values().flat_map(|&x| around(cell(x))).collect();
+        let sides: Vec<f64> = traced.iter().map(widest).collect();
+        let cells = |_: &(usize, Vec<u32>), place: usize| {
+            let side = sides[place];
+            let begun = begun[place].iter().filter(|_| side > 0.0);
+            let mut cells: Vec<[i64; 3]> = begun.flat_map(|&(_, x)| beside(cell_of(x, side))).collect();
+            cells.sort_unstable();
+            cells.dedup();
+            WantedStarts::Cells(side, cells)
+        };
+        let near = starts(view, with(seeds, cells));
+        let each = seeds.iter().zip(&traced).zip(near.iter().zip(&sides));
+        each.map(
+            |(((_, numbers), traced), (near, &side))| {
+                if side > 0.0 { Self::among(numbers, traced, (near, side)) } else { Self::default() }
+            },
+        )
+        .collect()
+    }
+
+    /// Those of some particles of a body, which are traced, among those that began near them in cells of this side.
+    fn among(seeds: &[u32], traced: &[TracedParticle], (near, side): (&[(u32, [f64; 3])], f64)) -> Self {
+        let seeds: HashSet<u32> = seeds.iter().copied().collect();
+        let start: HashMap<u32, [f64; 3]> = near.iter().copied().collect();
         let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-        visit_starts(view, body, &mut |number, x| {
-            if near.contains(&cell(x)) {
-                cells.entry(cell(x)).or_default().push(number);
-                start.insert(number, x);
-            }
-        });
+        for &(number, x) in near {
+            cells.entry(cell_of(x, side)).or_default().push(number);
+        }
         cells.values_mut().for_each(|numbers| numbers.sort_unstable());
 
         let mut neighbours = Neighbours::default();
-        for particle in &traced {
+        for particle in traced {
             let a = particle.number;
             let reach = 2.0 * NEAR * particle.half_width;
-            for &b in around(cell(start[&a])).filter_map(|cell| cells.get(&cell)).flatten() {
+            for &b in beside(cell_of(start[&a], side)).filter_map(|cell| cells.get(&cell)).flatten() {
                 let distance = super::norm(super::minus(start[&a], start[&b]));
                 let twice = seeds.contains(&b) && b <= a;
                 if !twice && distance > 0.0 && distance <= reach {
@@ -209,6 +212,14 @@ pub(super) fn particles(of_bodies: &mut [Neighbours], view: &dyn View) -> Vec<Ve
         }
     }
     particles
+}
+
+/// What is wanted of each of some bodies.
+fn with<X>(
+    bodies: &[(usize, X)],
+    wanted: impl Fn(&(usize, X), usize) -> WantedStarts,
+) -> Vec<(usize, WantedStarts)> {
+    bodies.iter().enumerate().map(|(place, body)| (body.0, wanted(body, place))).collect()
 }
 
 /// So many of the numbers below `count`, ascending: one in each equal part, anywhere in it, so that no row of a lattice
