@@ -15,6 +15,7 @@ mod same_run;
 use same_run::{StopAfter, assert_same_run, options};
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 use stickslip::door::Simulation;
 use stickslip::observe::{Checkpoint, PROGRAM, Results, Status};
 use stickslip::run::{RunError, Summary, resume, run, run_with};
@@ -112,6 +113,7 @@ friction = 0.4
 [outputs]
 tables = 0.01
 particles = 0.1
+grid = 0.07
 checkpoints = 0.05
 "#;
 
@@ -142,6 +144,7 @@ friction = 0.3
 [outputs]
 tables = 0.005
 particles = 0.1
+grid = 0.06
 surfaces = 0.05
 surface_format = "glb"
 checkpoints = 0.02
@@ -527,6 +530,105 @@ fn ranks_share_files_of_many_particles() {
         });
         among(&scene, 2, |simulation| resume(&scene, simulation, &options(&shared), &mut |_| {}).unwrap());
         assert_same_run(&alone, &shared);
+    }
+}
+
+/// The grid in several pieces: of one body that has more nodes than a piece takes, and of one that has few.
+#[test]
+fn ranks_share_files_of_many_nodes() {
+    let text = r#"
+space = { dimension = "plane-strain", cell = 0.1, basis = "linear" }
+time = { end = 0.02 }
+materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
+outputs = { grid = 0.015 }
+[[bodies]]
+name = "wide"
+material = "gel"
+velocity = [1, 2]
+particles_per_side = 1
+shape.box = { min = [-15, -15], max = [15, 15] }
+[[bodies]]
+name = "small"
+material = "gel"
+velocity = [0, -2]
+shape.ball = { center = [0, 17.5], radius = 2 }
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), text);
+    let alone = folder.path().join("1");
+    start(&scene, 1, &alone);
+    let last = fs::read(alone.join("grid/00001.vtu")).unwrap();
+    assert_eq!(String::from_utf8_lossy(&last).matches("<Piece ").count(), 2);
+    for count in 2..=3 {
+        let shared = folder.path().join(count.to_string());
+        start(&scene, count, &shared);
+        assert_same_run(&alone, &shared);
+    }
+}
+
+/// A run at its end, and one that is stopped before its first step, go on without a step: with the grid of the last
+/// one, which no frame had when the checkpoint was written, whoever wrote it and whoever takes it up.
+#[test]
+fn a_run_goes_on_with_the_grid_that_it_had() {
+    let folder = tempfile::tempdir().unwrap();
+    // The end is no multiple.
+    let scene = scene(folder.path(), &PLANE.replace("grid = 0.06", "grid = 0.07"));
+    let frames_beside_checkpoints = |out: &Path| {
+        let names = fs::read_dir(out.join("checkpoints")).unwrap().map(|entry| entry.unwrap().path());
+        let frames: Vec<_> = names.filter(|path| path.extension().unwrap() == "vtu").collect();
+        assert!(frames.iter().all(|path| path.with_extension("checkpoint").is_file()), "{frames:?}");
+        frames.len()
+    };
+    let go = |simulation: &mut dyn Simulation, out: &Path, steps: Option<u64>| {
+        let options = options(out);
+        let mut stop = StopAfter(steps.unwrap_or_default(), options.clone());
+        let ended = match steps {
+            Some(1..) => run_with(&scene, simulation, &options, &mut [&mut stop], &mut |_| {}),
+            Some(0) => {
+                options.stop.store(true, Ordering::Relaxed);
+                resume(&scene, simulation, &options, &mut |_| {})
+            }
+            None => resume(&scene, simulation, &options, &mut |_| {}),
+        };
+        ended.unwrap_or_else(|error| panic!("{error}")).status
+    };
+    let by = |count: usize, out: &Path, steps: Option<u64>| match count {
+        1 => go(&mut *stickslip::step::build(&scene).unwrap(), out, steps),
+        count => among(&scene, count, |simulation| go(simulation, out, steps)),
+    };
+    let ways = [[1, 1, 1], [2, 3, 2], [3, 1, 2], [1, 2, 3]];
+    let runs = ways.map(|[first, second, third]| {
+        let [whole, stopped, halted] =
+            ["whole", "stopped", "halted"].map(|name| folder.path().join(format!("{name} {first}{second}")));
+        start(&scene, first, &whole);
+        assert_eq!(frames_beside_checkpoints(&whole) > 0, first > 1);
+        for count in [second, third] {
+            assert_eq!(by(count, &whole, None), Status::Finished);
+        }
+        assert_eq!(by(first, &stopped, Some(40)), Status::Interrupted);
+        assert_eq!(by(second, &stopped, Some(0)), Status::Interrupted);
+        copy_all(&stopped, &halted);
+        assert_eq!(by(third, &stopped, None), Status::Finished);
+        frames_beside_checkpoints(&stopped);
+        assert_same_run(&whole, &stopped);
+        [whole, halted]
+    });
+    for run in &runs[1..] {
+        (runs[0].iter().zip(run)).for_each(|(expected, found)| assert_same_run(expected, found));
+    }
+    let never_resumed = folder.path().join("never resumed");
+    start(&scene, 1, &never_resumed);
+    assert_same_run(&never_resumed, &runs[0][0]);
+}
+
+fn copy_all(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let (path, target) = (entry.path(), to.join(entry.file_name()));
+        match path.is_dir() {
+            true => copy_all(&path, &target),
+            false => assert!(fs::copy(&path, &target).is_ok()),
+        }
     }
 }
 

@@ -659,18 +659,27 @@ impl GridSnapshot {
             all.force.extend(part.force);
             all.contact_impulse.extend(part.contact_impulse);
         }
-        let GridSnapshot { body, position, mass, velocity, force, contact_impulse, .. } = &all;
+        let GridSnapshot { body, position, .. } = &all;
         let place = |a: [f64; 3], b: [f64; 3]| a.partial_cmp(&b).unwrap_or(Ordering::Equal);
         let mut rows: Vec<usize> = (0..body.len()).collect();
         rows.sort_by(|&a, &b| body[a].cmp(&body[b]).then_with(|| place(position[a], position[b])));
+        all.of_rows(&rows)
+    }
+
+    /// The nodes in some rows that follow one another.
+    pub fn rows(&self, rows: Range<usize>) -> Self {
+        self.of_rows(&rows.collect::<Vec<_>>())
+    }
+
+    fn of_rows(&self, rows: &[usize]) -> Self {
         GridSnapshot {
-            body: rows.iter().map(|&row| body[row]).collect(),
-            position: rows.iter().map(|&row| position[row]).collect(),
-            mass: rows.iter().map(|&row| mass[row]).collect(),
-            velocity: rows.iter().map(|&row| velocity[row]).collect(),
-            force: rows.iter().map(|&row| force[row]).collect(),
-            contact_impulse: rows.iter().map(|&row| contact_impulse[row]).collect(),
-            ..all
+            body: rows.iter().map(|&row| self.body[row]).collect(),
+            position: rows.iter().map(|&row| self.position[row]).collect(),
+            mass: rows.iter().map(|&row| self.mass[row]).collect(),
+            velocity: rows.iter().map(|&row| self.velocity[row]).collect(),
+            force: rows.iter().map(|&row| self.force[row]).collect(),
+            contact_impulse: rows.iter().map(|&row| self.contact_impulse[row]).collect(),
+            ..*self
         }
     }
 

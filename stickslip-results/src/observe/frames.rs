@@ -127,8 +127,20 @@ impl Frames {
         write: impl FnOnce(&Path) -> io::Result<FileSum>,
     ) -> Result<(), OutputError> {
         let path = self.writer.ask(move |series| Ok(series.next_path(time)))?;
-        let sum = replace_by(&path, |part| self.writer.waiting().watch(&path, || write(part)))?;
+        let sum = self.put_at(&path, write)?;
         self.writer.ask(move |series| series.list(time, sum))
+    }
+
+    /// Makes a file that is none of the series in the same way.
+    ///
+    /// # Errors
+    /// The disk is full or refuses.
+    pub(super) fn put_at(
+        &self,
+        path: &Path,
+        write: impl FnOnce(&Path) -> io::Result<FileSum>,
+    ) -> Result<FileSum, OutputError> {
+        replace_by(path, |part| self.writer.waiting().watch(path, || write(part)))
     }
 
     /// Keeps which snapshots there are, or takes away those that were made later.

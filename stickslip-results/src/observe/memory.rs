@@ -76,6 +76,11 @@ impl Memory {
         self.mode == Mode::TakingUp
     }
 
+    /// Where a file of this kind lies that belongs to the checkpoint: it goes when the checkpoint does.
+    pub(super) fn beside(&self, kind: &str) -> PathBuf {
+        self.path.with_extension(kind)
+    }
+
     /// Whether something was kept under a whole name.
     pub(super) fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)

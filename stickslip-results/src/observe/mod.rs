@@ -26,6 +26,7 @@ mod memory;
 mod network;
 mod particle_file;
 mod particles;
+mod pieces;
 mod points;
 mod probes;
 mod reactions;

@@ -5,6 +5,7 @@ use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::memory::Memory;
 use super::particle_file::ParticleFile;
+use super::pieces::{PieceStart, cut, encoded};
 use super::schedule::Schedule;
 use super::shared::{ParticlesRequest, write_particles};
 use super::vtk::{PointArrays, VtkFile};
@@ -96,11 +97,9 @@ pub(super) fn is_chosen((bodies, every): (&[bool], usize), (body, number): (u32,
 }
 
 /// A body, and which of so many of its numbers.
-type Stretch = (u32, u32);
+pub(super) type Stretch = (u32, u32);
 /// Numbers of a body that stay together.
 const STRETCH: u32 = 1 << 14;
-/// Particles of a piece, where a stretch does not have more.
-const OF_A_PIECE: usize = 1 << 16;
 
 /// How many of some particles, of these bodies and numbers, there are in each stretch.
 pub(super) fn count_by_stretch(particles: impl Iterator<Item = (u32, u32)>) -> BTreeMap<Stretch, usize> {
@@ -114,33 +113,10 @@ fn identity(snapshot: &ParticleSnapshot) -> impl Iterator<Item = (u32, u32)> + '
     snapshot.body.iter().copied().zip(snapshot.number.iter().copied())
 }
 
-/// Where a piece begins, among the particles in the order of bodies and numbers, and how many it has.
-pub(super) struct PieceStart {
-    first: Stretch,
-    pub points: usize,
-}
-
-impl PieceStart {
-    /// The body and the number from which on particles are in it.
-    pub(super) fn begin(&self) -> (u32, u32) {
-        let (body, stretch) = self.first;
-        (body, stretch * STRETCH)
-    }
-}
-
-/// Pieces of a file with so many particles in each stretch: one at least.
-pub(super) fn cut(counts: &BTreeMap<Stretch, usize>) -> Vec<PieceStart> {
-    let mut pieces: Vec<PieceStart> = Vec::new();
-    for (&first, &count) in counts {
-        match pieces.last_mut().filter(|piece| piece.points + count <= OF_A_PIECE) {
-            Some(piece) => piece.points += count,
-            None => pieces.push(PieceStart { first, points: count }),
-        }
-    }
-    if pieces.is_empty() {
-        pieces.push(PieceStart { first: (0, 0), points: 0 });
-    }
-    pieces
+/// The body and the number from which on particles are in a piece.
+pub(super) fn begin(piece: &PieceStart<Stretch>) -> (u32, u32) {
+    let (body, stretch) = piece.first;
+    (body, stretch * STRETCH)
 }
 
 /// A snapshot at a time [s] as a file for ParaView, ready to be written: in pieces of up to 65,536 particles.
@@ -153,17 +129,7 @@ pub fn encode_particles(snapshot: &ParticleSnapshot, time: f64, content: &Snapsh
     if pieces.len() == 1 {
         return encode_piece(snapshot, time, content);
     }
-    let mut end = 0;
-    let files = pieces.iter().map(|piece| {
-        let begin = end;
-        end += piece.points;
-        encode_piece(&snapshot.rows(begin..end), time, content)
-    });
-    let joined = files.reduce(|mut file, piece| {
-        file.append(piece);
-        file
-    });
-    joined.expect("there is a piece")
+    encoded(&pieces, |rows| encode_piece(&snapshot.rows(rows), time, content))
 }
 
 /// The same as one piece.
@@ -267,6 +233,7 @@ impl ColumnSource for PointArrays {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pieces::OF_A_PIECE;
     use super::*;
     use crate::scene::{Compression, Precision};
     use std::fs;

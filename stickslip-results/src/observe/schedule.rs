@@ -47,6 +47,11 @@ impl Schedule {
         self.last = Some(time);
     }
 
+    /// Whether the last record was made at `time` [s].
+    pub(super) fn has(&self, time: f64) -> bool {
+        self.last == Some(time)
+    }
+
     /// Keeps when the last record was made, or goes on from there.
     pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
         let mut last = self.last;

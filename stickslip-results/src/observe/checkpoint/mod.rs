@@ -27,6 +27,7 @@ use super::shared::{self, ParticlesThere};
 use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -348,7 +349,7 @@ impl Checkpoint {
                 .file_name()
                 .to_str()
                 .and_then(|name| name.strip_suffix(".part"))
-                .is_some_and(is_checkpoint)
+                .is_some_and(|name| is_checkpoint(name) || of_checkpoint(name).is_some())
             {
                 fs::remove_file(entry.path()).map_err(OutputError::at(&entry.path()))?;
             }
@@ -366,14 +367,22 @@ impl Checkpoint {
         fs::rename(path, name).map_err(OutputError::at(path))
     }
 
-    /// Removes all but the newest checkpoints of a run.
+    /// Removes all but the newest checkpoints of a run, and what belongs to none of these.
     ///
     /// # Errors
     /// One cannot be removed.
     pub fn keep_newest(folder: &Path, count: usize) -> Result<(), OutputError> {
         let all = Self::list(folder)
             .map_err(|error| OutputError { path: error.path, source: io_error(error.problem) })?;
-        all.iter().skip(count).try_for_each(|path| fs::remove_file(path).map_err(OutputError::at(path)))
+        let (kept, old) = all.split_at(count.min(all.len()));
+        let path = folder.join(CHECKPOINTS);
+        let names = fs::read_dir(&path).into_iter().flatten().flatten().map(|entry| entry.file_name());
+        let is_left = |name: &OsString| {
+            let of = name.to_str().and_then(of_checkpoint);
+            of.is_some_and(|checkpoint| !kept.contains(&path.join(checkpoint)))
+        };
+        let left: Vec<PathBuf> = names.filter(is_left).map(|name| path.join(name)).collect();
+        old.iter().chain(&left).try_for_each(|path| fs::remove_file(path).map_err(OutputError::at(path)))
     }
 }
 
@@ -396,6 +405,12 @@ fn layout(what: &str) -> ReadProblem {
 /// What cannot be decoded although it is as it was written.
 fn damage(error: &rmp_serde::decode::Error) -> ReadProblem {
     layout(&format!("it is damaged: {error}"))
+}
+
+/// The name of the checkpoint to which a frame beside it belongs: that of `0000012345.vtu`.
+fn of_checkpoint(name: &str) -> Option<String> {
+    let checkpoint = format!("{}.checkpoint", name.strip_suffix(".vtu")?);
+    is_checkpoint(&checkpoint).then_some(checkpoint)
 }
 
 /// `0000012345.checkpoint`.

@@ -8,14 +8,17 @@ pub use question::{WantedStarts, cell_of, counts, has_near, starts};
 
 use super::checkpoint::{CheckpointForm, MOST_PARTICLES, START, Section};
 use super::file::{FileSum, ReadError};
+use super::grid::{count_nodes, encode_nodes, first_in};
 use super::particle_file::ParticleFile;
-use super::particles::{PieceStart, count_by_stretch, cut, encode_piece, is_chosen, read_piece};
+use super::particles::{begin, count_by_stretch, encode_piece, is_chosen, read_piece};
+use super::pieces::{counts_of_both, cut};
 use super::state_sum::StateSum;
-use super::vtk::{END, PieceSize};
-use crate::door::{NotTakenUp, ParticleSnapshot, SavedShare, SavedState, Simulation, View};
+use super::vtk::{END, PieceSize, VtkFile};
+use crate::door::{GridSnapshot, NotTakenUp, ParticleSnapshot, SavedShare, SavedState, Simulation, View};
 use crate::ranks::{Message, Ranks, bytes_of, combined, gathered, message_to, read};
 use crate::scene::{SnapshotContent, StartVelocities};
 use joint_file::{JointFile, JointReading, Trouble};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
@@ -30,6 +33,8 @@ pub const PROGRAM: Program = Program { act, find };
 enum Request {
     /// A file of particles.
     Particles(ParticlesRequest),
+    /// A file of the nodes of the grid.
+    Grid(GridRequest),
     /// The sections of a checkpoint there, packed or not.
     Sections(PathBuf, bool),
     /// Something about all particles.
@@ -46,9 +51,18 @@ pub(super) struct ParticlesRequest {
     pub bodies: Vec<bool>,
 }
 
+/// A file of nodes that ranks write together.
+#[derive(Serialize, Deserialize)]
+pub(super) struct GridRequest {
+    pub path: PathBuf,
+    pub time: f64,
+    pub content: SnapshotContent,
+}
+
 fn act(own: &dyn Simulation, ranks: &dyn Ranks, asked: &[u8]) -> Vec<u8> {
     match read(asked) {
         Request::Particles(request) => bytes_of(&put_particles(own, ranks, &request)),
+        Request::Grid(request) => bytes_of(&put_grid(own, ranks, &request)),
         Request::Sections(path, packed) => {
             let form = if packed { CheckpointForm::Compressed } else { CheckpointForm::Plain };
             bytes_of(&put_sections(own, ranks, (&path, form)))
@@ -73,7 +87,6 @@ pub(super) fn write_particles(view: &dyn View, request: ParticlesRequest) -> io:
     ask(view, &Request::Particles(ParticlesRequest { path, ..request }))
 }
 
-/// Each rank packs every so many-th piece, for which the others send it particles.
 fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest) -> Result<FileSum, Trouble> {
     let ParticlesRequest { path, time, content, bodies } = request;
     let mut own = BTreeMap::new();
@@ -84,44 +97,112 @@ fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest)
         let all = numbers.into_iter().map(|number| (body as u32, number));
         own.extend(count_by_stretch(all.filter(|which| is_chosen((bodies, content.every), *which))));
     }
-    let counts = combined(ranks, &own, |mut all, others| {
-        others.into_iter().for_each(|(stretch, count)| *all.entry(stretch).or_default() += count);
-        all
-    });
-    let pieces = cut(&counts);
-    let ends: Vec<(u32, u32)> =
-        pieces[1..].iter().map(PieceStart::begin).chain([(bodies.len() as u32, 0)]).collect();
-    let sizes: Vec<PieceSize> = pieces.iter().map(|piece| PieceSize::of_points(piece.points)).collect();
-    let mut first = None;
-    let mut file: Option<JointFile> = None;
-    let mut found = Vec::new();
-    for round in (0..pieces.len()).step_by(ranks.count()) {
-        let mut parts = Vec::new();
-        let mut messages: Vec<Message> = Vec::new();
-        for (rank, piece) in (round..pieces.len()).enumerate().take(ranks.count()) {
-            let wanted = |body, number| is_chosen((bodies, content.every), (body, number));
-            let rows = view.snapshot_between([pieces[piece].begin(), ends[piece]], &wanted);
-            match rank == ranks.rank() {
-                true => parts.push(rows),
-                false if rows.number.is_empty() => {}
-                false => *message_to(&mut messages, rank) = bytes_of(&rows),
-            }
-        }
-        parts.extend(ranks.exchange(messages).iter().map(|(_, rows)| read::<ParticleSnapshot>(rows)));
-        let mut packed = (round + ranks.rank() < pieces.len())
-            .then(|| encode_piece(&ParticleSnapshot::merged(parts), *time, content));
-        let header = packed.as_ref().filter(|_| round == 0).map_or(0, |packed| packed.header(&sizes).len());
-        let file = file.get_or_insert_with(|| {
-            let start = read(&ranks.hear_first(&bytes_of(&(header as u64))));
-            JointFile::create(ranks, path, start)
-        });
-        let size = packed.as_ref().map(|packed| packed.sizes().swap_remove(0));
-        file.put(&packed.as_mut().map_or_else(Vec::new, |packed| packed.take_bytes()));
-        found.extend(gathered(ranks, &size).into_iter().flatten());
-        first = first.or(packed);
+    let pieces = cut(&combined(ranks, &own, counts_of_both));
+    let ends: Vec<(u32, u32)> = pieces[1..].iter().map(begin).chain([(bodies.len() as u32, 0)]).collect();
+    let wanted = |body, number| is_chosen((bodies, content.every), (body, number));
+    let file = PiecedFile {
+        path,
+        points: pieces.iter().map(|piece| piece.points).collect(),
+        rows: &|piece| view.snapshot_between([begin(&pieces[piece]), ends[piece]], &wanted),
+        encode: &|rows| encode_piece(&rows, *time, content),
+    };
+    file.put(ranks)
+}
+
+/// Has ranks write a file of the nodes of the last step, the same as one would write: what went into it.
+pub(super) fn write_grid(view: &dyn View, request: GridRequest) -> io::Result<FileSum> {
+    let path = absolute(&request.path).unwrap_or(request.path);
+    ask(view, &Request::Grid(GridRequest { path, ..request }))
+}
+
+fn put_grid(view: &dyn View, ranks: &dyn Ranks, request: &GridRequest) -> Result<FileSum, Trouble> {
+    let GridRequest { path, time, content } = request;
+    let own = view.grid_snapshot();
+    let pieces = cut(&count_nodes(&own, &|counts| combined(ranks, &counts, counts_of_both)));
+    let first = |piece: usize| pieces.get(piece).map_or(own.mass.len(), |start| first_in(&own, &start.first));
+    let file = PiecedFile {
+        path,
+        points: pieces.iter().map(|piece| piece.points).collect(),
+        rows: &|piece| own.rows(first(piece)..first(piece + 1)),
+        encode: &|rows| encode_nodes(&rows, *time, content),
+    };
+    file.put(ranks)
+}
+
+/// What a file has a point each for.
+trait Rows: Serialize + DeserializeOwned {
+    fn is_empty(&self) -> bool;
+    /// Those of several ranks, in the order of the file.
+    fn merged(parts: Vec<Self>) -> Self;
+}
+
+impl Rows for ParticleSnapshot {
+    fn is_empty(&self) -> bool {
+        self.number.is_empty()
     }
-    let header = first.filter(|_| ranks.rank() == 0).map_or_else(String::new, |first| first.header(&found));
-    file.expect("there is a piece").finish([header.as_bytes(), END], false)
+
+    fn merged(parts: Vec<Self>) -> Self {
+        ParticleSnapshot::merged(parts)
+    }
+}
+
+impl Rows for GridSnapshot {
+    fn is_empty(&self) -> bool {
+        self.mass.is_empty()
+    }
+
+    fn merged(parts: Vec<Self>) -> Self {
+        GridSnapshot::merged(parts)
+    }
+}
+
+/// A file of points that ranks write together, piece by piece.
+struct PiecedFile<'a, R> {
+    path: &'a Path,
+    /// How many points of all ranks each piece has; there is a piece.
+    points: Vec<usize>,
+    /// What this rank has of a piece.
+    rows: &'a dyn Fn(usize) -> R,
+    /// A piece of what all have of it.
+    encode: &'a dyn Fn(R) -> VtkFile,
+}
+
+impl<R: Rows> PiecedFile<'_, R> {
+    /// Each rank packs every so many-th piece, for which the others send it what they have.
+    fn put(self, ranks: &dyn Ranks) -> Result<FileSum, Trouble> {
+        let PiecedFile { path, points, rows, encode } = self;
+        let sizes: Vec<PieceSize> = points.iter().map(|&points| PieceSize::of_points(points)).collect();
+        let mut first = None;
+        let mut file: Option<JointFile> = None;
+        let mut found = Vec::new();
+        for round in (0..points.len()).step_by(ranks.count()) {
+            let mut parts = Vec::new();
+            let mut messages: Vec<Message> = Vec::new();
+            for (rank, piece) in (round..points.len()).enumerate().take(ranks.count()) {
+                let rows = rows(piece);
+                match rank == ranks.rank() {
+                    true => parts.push(rows),
+                    false if rows.is_empty() => {}
+                    false => *message_to(&mut messages, rank) = bytes_of(&rows),
+                }
+            }
+            parts.extend(ranks.exchange(messages).iter().map(|(_, rows)| read::<R>(rows)));
+            let mut packed = (round + ranks.rank() < points.len()).then(|| encode(R::merged(parts)));
+            let header =
+                packed.as_ref().filter(|_| round == 0).map_or(0, |packed| packed.header(&sizes).len());
+            let file = file.get_or_insert_with(|| {
+                let start = read(&ranks.hear_first(&bytes_of(&(header as u64))));
+                JointFile::create(ranks, path, start)
+            });
+            let size = packed.as_ref().map(|packed| packed.sizes().swap_remove(0));
+            file.put(&packed.as_mut().map_or_else(Vec::new, |packed| packed.take_bytes()));
+            found.extend(gathered(ranks, &size).into_iter().flatten());
+            first = first.or(packed);
+        }
+        let header =
+            first.filter(|_| ranks.rank() == 0).map_or_else(String::new, |first| first.header(&found));
+        file.expect("there is a piece").finish([header.as_bytes(), END], false)
+    }
 }
 
 /// Has ranks write the particles of a checkpoint as sections of a file that has nothing else yet.

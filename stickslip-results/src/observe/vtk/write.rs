@@ -188,9 +188,13 @@ impl VtkFile {
         }
     }
 
-    /// Puts the pieces of another file behind its own, which has the same arrays.
-    pub(in crate::observe) fn append(&mut self, other: VtkFile) {
-        self.pieces.extend(other.pieces);
+    /// The pieces of several files as one file, which all have the same arrays; one file at least.
+    pub(in crate::observe) fn joined(files: impl Iterator<Item = VtkFile>) -> VtkFile {
+        let joined = files.reduce(|mut file, other| {
+            file.pieces.extend(other.pieces);
+            file
+        });
+        joined.expect("there is a file")
     }
 
     /// The piece to which arrays are added.
