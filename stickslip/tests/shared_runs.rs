@@ -373,6 +373,14 @@ friction = 0.3
 tables = 0.005
 particles = 0.05
 checkpoints = 0.02
+[outputs.fringes]
+interval = 0.04
+exposure = 0.02
+samples = 3
+stress_optic_coefficient = 1e-8
+light = "white"
+width = 70
+overlay = "force-chains"
 "#;
 
 /// The unit cube.
@@ -508,7 +516,8 @@ fn ranks_share_files_of_many_particles() {
         format!(
             "space = {{ dimension = \"plane-strain\", cell = 0.1 }}\ntime = {{ end = 0.02 }}\n\
              materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e4, poisson_ratio = 0.3 }} }}\n\
-             outputs = {{ particles = 0.01, snapshots = {{ {snapshots} }} }}\n{bodies}"
+             outputs = {{ particles = 0.01, snapshots = {{ {snapshots} }}, \
+             fringes = {{ interval = 0.005, stress_parameter = 1e3, width = 200 }} }}\n{bodies}"
         )
     };
     let folder = tempfile::tempdir().unwrap();
@@ -563,6 +572,60 @@ shape.ball = { center = [0, 17.5], radius = 2 }
         let shared = folder.path().join(count.to_string());
         start(&scene, count, &shared);
         assert_same_run(&alone, &shared);
+    }
+}
+
+/// Grains that press on each other and on a plate, some of them opaque and some beside the picture: in the light of
+/// each polariscope, whoever looks at which.
+#[test]
+fn ranks_see_the_light_that_one_sees() {
+    let text = |camera: &str| {
+        format!(
+            r#"
+gravity = [0, -9.81]
+space = {{ dimension = "plane-strain", cell = 0.1 }}
+time = {{ end = 0.02 }}
+materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
+[[bodies]]
+name = "plate"
+material = "gel"
+shape.box = {{ min = [-0.3, -0.4], max = [3.5, 0] }}
+[[bodies]]
+name = "grain {{i}} {{j}}"
+repeat = {{ i = 4, j = 3 }}
+material = "gel"
+shape.ball = {{ center = ["0.4 + 0.8 * i", "0.41 + 0.8 * j"], radius = 0.4 }}
+velocity = ["1 - i", "-1 - 2 * j"]
+[outputs]
+tables = 0.005
+checkpoints = 0.005
+[outputs.fringes]
+interval = 0.008
+exposure = 0.004
+samples = 2
+stress_parameter = 1e3
+width = 130
+overlay = "force-chains"
+{camera}"#
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let cameras = [
+        "bodies = [\"grain *\"]\n",
+        "bodies = [\"plate\", \"grain 1 *\"]\nlight = \"white\"\nfield = \"light\"\n",
+        "polarizer = 0.3\nlight = \"monochrome\"\nview = { min = [0.5, -0.2], max = [2, 1.5] }\n",
+    ];
+    for (i, camera) in cameras.into_iter().enumerate() {
+        let scene = scene(folder.path(), &text(camera));
+        let out = |count: usize| folder.path().join(format!("{i} {count}"));
+        start(&scene, 1, &out(1));
+        let pictures: Vec<_> =
+            (0..2).map(|n| fs::read(out(1).join(format!("fringes/{n:05}.png"))).unwrap()).collect();
+        assert_ne!(pictures[0], pictures[1]);
+        for count in [2, 3, 5] {
+            start(&scene, count, &out(count));
+            assert_same_run(&out(1), &out(count));
+        }
     }
 }
 

@@ -4,12 +4,15 @@
 use super::file::{FileSum, OutputError, is_there, remove_from, replace, replace_summed, secure};
 use super::folder::OutputFolder;
 use super::memory::Memory;
+use super::shared::{Look, bounds_on_ranks, light_on_ranks};
 use super::table::{CellValue, CsvTable, TableRow, columns};
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
 use crate::image::{Image, write_animation};
-use crate::polariscope::{Film, ImageWindow, Link, OpticalBench, Push, Stage, bounds, draw_links, links};
+use crate::polariscope::{
+    Film, ImageWindow, LinearRgb, Link, OpticalBench, Push, Stage, bounds, draw_links, links,
+};
 use crate::scene::{self, Overlay, Scene};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::{Deserialize, Serialize};
@@ -49,6 +52,10 @@ pub(super) struct FringesObserver {
     /// Whether there was a first look.
     looked: bool,
     contacts: ContactCursor,
+    /// What ranks that share the simulation need to know.
+    look: Look,
+    /// What is in the picture, once that is known and ranks need it.
+    window: Option<ImageWindow>,
     writer: Writer<FringeWriter>,
 }
 
@@ -146,8 +153,14 @@ impl FringesObserver {
         let path = folder.join(FRINGES);
         fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
         let birefringent = |body: &scene::Body| camera.bodies.contains(&body.name);
-        let writer = FringeWriter {
+        let look = Look {
+            dimension: scene.dimension.axes(),
+            bodies: scene.bodies.len(),
             specimens: (0..scene.bodies.len()).filter(|&i| birefringent(&scene.bodies[i])).collect(),
+            polariscope: camera.polariscope,
+        };
+        let writer = FringeWriter {
+            specimens: look.specimens.clone(),
             folder: folder.clone(),
             table: CsvTable::create(folder, FRINGES_TABLE, scene.outputs.measurements.unit())?,
             frames: Vec::new(),
@@ -163,8 +176,32 @@ impl FringesObserver {
             overlay: camera.overlay,
             looked: false,
             contacts: ContactCursor::default(),
+            look,
+            window: None,
             writer: Writer::start(writer, &path, folder.waiting())?,
         })
+    }
+}
+
+impl FringesObserver {
+    /// The same where ranks share the particles: they make the light.
+    fn look_on_ranks(&mut self, view: &dyn View, exposure: Option<Exposure>) -> Result<(), OutputError> {
+        let window = match self.window {
+            Some(window) => window,
+            None => {
+                let known =
+                    |writer: &mut FringeWriter| Ok(writer.camera.view.is_some() || writer.view.is_some());
+                let found = if self.writer.ask(known)? { None } else { bounds_on_ranks(view, &self.look) };
+                self.writer.ask(move |writer| Ok(writer.window(|_| found)))?
+            }
+        };
+        self.window = Some(window);
+        let Some(exposure) = exposure else { return Ok(()) };
+        let pushes = exposure.pushes.clone().unwrap_or_default();
+        let Some((light, links)) = light_on_ranks(view, (&self.look, window), pushes) else { return Ok(()) };
+        let bytes = size_of_val(&light[..]);
+        self.writer.hand_over(bytes, move |writer| writer.expose((&light, links), exposure));
+        Ok(())
     }
 }
 
@@ -180,32 +217,46 @@ fn idle_processors() -> Option<ThreadPool> {
 }
 
 impl FringeWriter {
-    fn view(&self, particles: &ParticleSnapshot) -> Photograph {
-        let shown = self.camera.view.or_else(|| bounds(particles, &self.specimens));
-        // Bodies without particles leave nothing to frame.
-        let window = ImageWindow::around(shown.unwrap_or([[0.0; 2], [1.0; 2]]), self.camera.width);
-        let bench =
-            OpticalBench::new(&self.camera.polariscope, Stage { window, specimens: self.specimens.clone() });
-        Photograph { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
+    /// What is in the picture: from the first look on what the camera says, or where `find` finds specimens then.
+    fn window(&mut self, find: impl FnOnce(&[usize]) -> Option<[[f64; 2]; 2]>) -> ImageWindow {
+        let FringeWriter { camera, specimens, view, .. } = self;
+        let view = view.get_or_insert_with(|| {
+            // Bodies without particles leave nothing to frame.
+            let shown = camera.view.or_else(|| find(specimens)).unwrap_or([[0.0; 2], [1.0; 2]]);
+            let stage =
+                Stage { window: ImageWindow::around(shown, camera.width), specimens: specimens.clone() };
+            let bench = OpticalBench::new(&camera.polariscope, stage);
+            Photograph { film: bench.film(), bench, times: Vec::new(), links: Vec::new() }
+        });
+        view.bench.stage().window
     }
 
     /// Looks at particles, and lets their light fall on the film if it is time.
     fn look(&mut self, particles: &ParticleSnapshot, exposure: Option<Exposure>) -> Result<(), OutputError> {
-        let mut view = self.view.take().unwrap_or_else(|| self.view(particles));
-        if let Some(Exposure { time, pushes, .. }) = &exposure {
-            let Photograph { bench, film, .. } = &mut view;
-            match &self.hands {
-                Some(hands) => hands.install(|| bench.expose(particles, film)),
-                None => bench.expose(particles, film),
-            }
-            view.times.push(*time);
-            if let Some(pushes) = pushes {
-                self.largest = pushes.iter().fold(self.largest, |largest, push| largest.max(push.force));
-                view.links = links(particles, pushes, &self.specimens);
-            }
+        self.window(|specimens| bounds(particles, specimens));
+        let (Some(Photograph { bench, .. }), Some(exposure)) = (&self.view, exposure) else { return Ok(()) };
+        let light = match &self.hands {
+            Some(hands) => hands.install(|| bench.light(particles)),
+            None => bench.light(particles),
+        };
+        let links = links(particles, exposure.pushes.as_deref().unwrap_or_default(), &self.specimens);
+        self.expose((&light, links), exposure)
+    }
+
+    /// Lets light fall on the film, of bodies with these links.
+    fn expose(
+        &mut self,
+        (light, links): (&[LinearRgb], Vec<Link>),
+        Exposure { time, pushes, last }: Exposure,
+    ) -> Result<(), OutputError> {
+        let Some(view) = &mut self.view else { return Ok(()) };
+        view.film.expose(light);
+        view.times.push(time);
+        if let Some(pushes) = pushes {
+            self.largest = pushes.iter().fold(self.largest, |largest, push| largest.max(push.force));
+            view.links = links;
         }
-        self.view = Some(view);
-        if exposure.is_some_and(|exposure| exposure.last) { self.develop() } else { Ok(()) }
+        if last { self.develop() } else { Ok(()) }
     }
 
     /// Writes what is on the film, and puts in new film.
@@ -326,7 +377,6 @@ impl Observer for FringesObserver {
             return Ok(());
         }
         self.writer.make_room()?;
-        let particles = view.snapshot();
         let pushes = (due && self.overlay == Overlay::ForceChains).then(|| {
             let push = |contact: ContactState| Push {
                 bodies: [contact.body_a, contact.body_b],
@@ -335,8 +385,12 @@ impl Observer for FringesObserver {
             self.contacts.read(view).into_iter().map(push).collect()
         });
         let exposure = due.then(|| Exposure { time, pushes, last: self.shutter.pass(time) });
-        self.writer.hand_over(particles.bytes(), move |writer| writer.look(&particles, exposure));
         self.looked = true;
+        if !view.shares().is_empty() {
+            return self.look_on_ranks(view, exposure);
+        }
+        let particles = view.snapshot();
+        self.writer.hand_over(particles.bytes(), move |writer| writer.look(&particles, exposure));
         Ok(())
     }
 

@@ -1,13 +1,15 @@
 //! Force chains: lines along which bodies press on each other.
 
 use super::ImageWindow;
-use super::cloud::{Cloud, clouds};
+use super::cloud::{Cloud, Outline};
+use super::seen::SeenBody;
 use crate::door::ParticleSnapshot;
 use crate::image::Image;
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Two bodies that press on each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Push {
     /// Indices of the bodies.
     pub bodies: [usize; 2],
@@ -40,30 +42,76 @@ const OPACITY: f64 = 0.85;
 /// The links of some bodies: from the centre of each to where it presses on another. Bodies that are not among
 /// `specimens`, such as walls, have no links of their own.
 pub fn links(particles: &ParticleSnapshot, pushes: &[Push], specimens: &[usize]) -> Vec<Link> {
-    let clouds = clouds(particles, REACH, 0.0);
-    let find = |body: usize| clouds.iter().find(|cloud| cloud.body == body);
-    let mut links = Vec::new();
-    for push in pushes.iter().filter(|push| push.force > 0.0) {
-        let [Some(a), Some(b)] = push.bodies.map(find) else { continue };
-        let Some(contact) = meeting_place(a, b) else { continue };
-        for cloud in [a, b].into_iter().filter(|cloud| specimens.contains(&cloud.body)) {
-            links.push(Link { center: cloud.center, contact, force: push.force });
-        }
-    }
-    links
+    let pressing = pressing(pushes);
+    let seen = SeenBody::each(particles, |body| pressing.contains(&body));
+    let clouds: BTreeMap<usize, Cloud> = seen.map(|seen| (seen.body, wide_cloud(&seen))).collect();
+    let pairs = pairs(pushes, clouds.values().map(|cloud| cloud.outline));
+    let place = |pair: &Pair| {
+        let [few, many] = [pair.few, pair.many].map(|outline| &clouds[&outline.body]);
+        meeting_place(&places_near(few, &pair.many), many)
+    };
+    let places: Vec<_> = pairs.iter().map(place).collect();
+    links_to(&places, &pairs, specimens)
+}
+
+/// Points of a body among which those of others are looked for.
+pub fn wide_cloud(seen: &SeenBody) -> Cloud {
+    Cloud::of(seen, REACH, 0.0)
+}
+
+/// The bodies that press on each other.
+pub fn pressing(pushes: &[Push]) -> BTreeSet<usize> {
+    pushes.iter().filter(|push| push.force > 0.0).flat_map(|push| push.bodies).collect()
+}
+
+/// Two bodies with points that press on each other.
+pub struct Pair {
+    push: Push,
+    /// In the order of the push.
+    centers: [[f64; 2]; 2],
+    /// That with fewer points.
+    pub few: Outline,
+    /// The other.
+    pub many: Outline,
+}
+
+/// Those of some pushes, by the outlines of the bodies that have points.
+pub fn pairs(pushes: &[Push], outlines: impl Iterator<Item = Outline>) -> Vec<Pair> {
+    let known: BTreeMap<usize, Outline> = outlines.map(|outline| (outline.body, outline)).collect();
+    let pair = |push: &Push| {
+        let [a, b] = [*known.get(&push.bodies[0])?, *known.get(&push.bodies[1])?];
+        let (few, many) = if a.points < b.points { (a, b) } else { (b, a) };
+        Some(Pair { push: *push, centers: [a.center, b.center], few, many })
+    };
+    pushes.iter().filter(|push| push.force > 0.0).filter_map(pair).collect()
+}
+
+/// The links to the place at which each pair meets, if it does.
+pub fn links_to(places: &[Option<[f64; 2]>], pairs: &[Pair], specimens: &[usize]) -> Vec<Link> {
+    let of_pair = |(pair, place): (&Pair, &Option<[f64; 2]>)| {
+        let (Push { bodies, force }, contact) = (pair.push, *place);
+        let centers = bodies.into_iter().zip(pair.centers).filter(|(body, _)| specimens.contains(body));
+        let link = |(_, center)| Some(Link { center, contact: contact?, force });
+        centers.filter_map(link).collect::<Vec<_>>()
+    };
+    pairs.iter().zip(places).flat_map(of_pair).collect()
+}
+
+/// Places of points that may be within reach of another body, which has more of them.
+pub fn places_near(few: &Cloud, many: &Outline) -> Vec<[f64; 2]> {
+    let Outline { bounds, reach, .. } = many;
+    let is_near =
+        |x: &[f64; 2]| (0..2).all(|i| !(x[i] < bounds[0][i] - reach || x[i] > bounds[1][i] + reach));
+    few.points().iter().map(|point| point.place).filter(is_near).collect()
 }
 
 /// Mean of the places half-way between points of two bodies that are within reach, weighted by nearness;
 /// `None` if they are apart.
-fn meeting_place(a: &Cloud, b: &Cloud) -> Option<[f64; 2]> {
-    let (few, many) = if a.points().len() < b.points().len() { (a, b) } else { (b, a) };
-    let reach = many.reach;
+pub fn meeting_place(few: &[[f64; 2]], many: &Cloud) -> Option<[f64; 2]> {
+    let reach = many.outline.reach;
     let mut sum = [0.0; 3];
-    for x in few.points().iter().map(|point| point.place) {
-        if (0..2).any(|i| x[i] < many.bounds[0][i] - reach || x[i] > many.bounds[1][i] + reach) {
-            continue;
-        }
-        for y in many.near(x).map(|point| point.place) {
+    for x in few {
+        for y in many.near(*x).map(|point| point.place) {
             let gap = 1.0 - ((x[0] - y[0]).powi(2) + (x[1] - y[1]).powi(2)) / (reach * reach);
             if gap > 0.0 {
                 let weight = gap * gap * gap;

@@ -1,7 +1,8 @@
 //! One body as light sees it: points of the plane, each with its area, the stress along the ray through it, and the way
 //! through the body.
 
-use crate::door::ParticleSnapshot;
+use super::seen::{SeenBody, SeenParticle};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A particle of a plane scene, or the particles of a scene in space that lie one behind the other.
@@ -15,50 +16,33 @@ pub struct CloudPoint {
     pub values: [f64; 4],
 }
 
-/// The points of one body, sorted into square bins.
-pub struct Cloud {
+/// Where the points of a body are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outline {
     /// Index of the body.
     pub body: usize,
+    /// How many points it has.
+    pub points: usize,
     /// How far points are looked for, twice the side of a bin [m].
     pub reach: f64,
     /// Lower and upper corner of the points [m].
     pub bounds: [[f64; 2]; 2],
     /// Centre of mass [m].
     pub center: [f64; 2],
+}
+
+/// The points of one body, sorted into square bins.
+pub struct Cloud {
+    pub outline: Outline,
     bins: [usize; 2],
     starts: Vec<u32>,
     points: Vec<CloudPoint>,
 }
 
-/// The bodies of a snapshot that have particles, in their order; `reach` is in distances between particles, and at least
-/// `least` [m].
-pub fn clouds(particles: &ParticleSnapshot, reach: f64, least: f64) -> Vec<Cloud> {
-    let mut clouds = Vec::new();
-    let mut start = 0;
-    for group in particles.body.chunk_by(|a, b| a == b) {
-        let range = start..start + group.len();
-        start = range.end;
-        let size = |i: usize| particles.volume[i].max(f64::MIN_POSITIVE);
-        let mean = range.clone().map(size).sum::<f64>() / group.len() as f64;
-        let (points, spacing) = if particles.dimension == 2 {
-            (range.clone().map(|i| flat(particles, i)).collect(), mean.sqrt())
-        } else {
-            (columns(particles, range.clone(), mean.cbrt()), mean.cbrt())
-        };
-        let mass: f64 = particles.mass[range.clone()].iter().sum();
-        let moment =
-            |axis: usize| range.clone().map(|i| particles.mass[i] * particles.position[i][axis]).sum::<f64>();
-        let center = [moment(0) / mass, moment(1) / mass];
-        clouds.push(Cloud::sorted(group[0] as usize, points, (center, (reach * spacing).max(least))));
-    }
-    clouds
-}
-
 /// A particle of a plane scene: its volume is per metre of depth, and so is its way.
-fn flat(particles: &ParticleSnapshot, i: usize) -> CloudPoint {
-    let [x, y, _] = particles.position[i];
-    let [xx, yy, _, xy, _, _] = particles.stress[i];
-    CloudPoint { place: [x, y], area: particles.volume[i], values: [xx, yy, xy, 1.0] }
+fn flat(particle: &SeenParticle) -> CloudPoint {
+    let &SeenParticle { place, stress: [xx, yy, xy], volume, .. } = particle;
+    CloudPoint { place, area: volume, values: [xx, yy, xy, 1.0] }
 }
 
 /// Particles in columns along the third axis, a column for each square of side `side` [m] that holds any:
@@ -66,19 +50,17 @@ fn flat(particles: &ParticleSnapshot, i: usize) -> CloudPoint {
 /// ```text
 /// way = sum V / side^2,   stress = sum V sigma / sum V
 /// ```
-fn columns(particles: &ParticleSnapshot, range: std::ops::Range<usize>, side: f64) -> Vec<CloudPoint> {
+fn columns(particles: &[SeenParticle], side: f64) -> Vec<CloudPoint> {
     let low = [0, 1].map(|axis| {
-        particles.position[range.clone()].iter().map(|x| x[axis]).fold(f64::INFINITY, f64::min) - 0.5 * side
+        particles.iter().map(|particle| particle.place[axis]).fold(f64::INFINITY, f64::min) - 0.5 * side
     });
     // V, V x, V y, V sigma
     let mut columns: BTreeMap<[i64; 2], [f64; 6]> = BTreeMap::new();
-    for i in range {
-        let [x, y, _] = particles.position[i];
-        let [xx, yy, _, xy, _, _] = particles.stress[i];
+    for &SeenParticle { place: [x, y], stress: [xx, yy, xy], volume, .. } in particles {
         let key = [((x - low[0]) / side).floor() as i64, ((y - low[1]) / side).floor() as i64];
         let sum = columns.entry(key).or_default();
         for (sum, value) in sum.iter_mut().zip([1.0, x, y, xx, yy, xy]) {
-            *sum += particles.volume[i] * value;
+            *sum += volume * value;
         }
     }
     let point = |[volume, x, y, xx, yy, xy]: [f64; 6]| CloudPoint {
@@ -95,6 +77,23 @@ pub fn joined([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
 }
 
 impl Cloud {
+    /// The points of a body; `reach` is in distances between particles, and at least `least` [m].
+    pub fn of(seen: &SeenBody, reach: f64, least: f64) -> Self {
+        let SeenBody { particles, .. } = seen;
+        let size = |particle: &SeenParticle| particle.volume.max(f64::MIN_POSITIVE);
+        let mean = particles.iter().map(size).sum::<f64>() / particles.len() as f64;
+        let (points, spacing) = if seen.dimension == 2 {
+            (particles.iter().map(flat).collect(), mean.sqrt())
+        } else {
+            (columns(particles, mean.cbrt()), mean.cbrt())
+        };
+        let mass: f64 = particles.iter().map(|particle| particle.mass).sum();
+        let moment =
+            |axis: usize| particles.iter().map(|particle| particle.mass * particle.place[axis]).sum::<f64>();
+        let center = [moment(0) / mass, moment(1) / mass];
+        Cloud::sorted(seen.body, points, (center, (reach * spacing).max(least)))
+    }
+
     fn sorted(body: usize, points: Vec<CloudPoint>, (center, reach): ([f64; 2], f64)) -> Self {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for point in &points {
@@ -105,7 +104,8 @@ impl Cloud {
         let wide = [0, 1].map(|axis| (bounds[1][axis] - bounds[0][axis]) / reach + 1.0);
         let reach = reach * (wide[0] * wide[1] / most).sqrt().max(1.0);
         let bins = [0, 1].map(|axis| (2.0 * (bounds[1][axis] - bounds[0][axis]) / reach) as usize + 1);
-        let mut cloud = Cloud { body, reach, bounds, center, bins, starts: Vec::new(), points: Vec::new() };
+        let outline = Outline { body, points: points.len(), reach, bounds, center };
+        let mut cloud = Cloud { outline, bins, starts: Vec::new(), points: Vec::new() };
         let bin = |point: &CloudPoint| {
             let [column, row] = cloud.bin(point.place).map(|index| index as usize);
             row * bins[0] + column
@@ -121,7 +121,8 @@ impl Cloud {
     }
 
     fn bin(&self, x: [f64; 2]) -> [i64; 2] {
-        [0, 1].map(|axis| (2.0 * (x[axis] - self.bounds[0][axis]) / self.reach).floor() as i64)
+        let Outline { bounds, reach, .. } = self.outline;
+        [0, 1].map(|axis| (2.0 * (x[axis] - bounds[0][axis]) / reach).floor() as i64)
     }
 
     /// Points in the bins around a place: all that are nearer than `reach`, and some more.
@@ -138,7 +139,7 @@ impl Cloud {
 
     /// Points in the rows of bins around a height: all that are nearer to it than `reach`, and some more.
     pub fn across(&self, y: f64) -> &[CloudPoint] {
-        let [_, row] = self.bin([self.bounds[0][0], y]);
+        let [_, row] = self.bin([self.outline.bounds[0][0], y]);
         let start = |row: i64| {
             let row = row.clamp(0, self.bins[1] as i64) as usize;
             self.starts[row * self.bins[0]] as usize

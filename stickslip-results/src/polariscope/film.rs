@@ -30,7 +30,7 @@ impl Film {
     }
 
     /// Adds the light of an instant, rows from the top.
-    pub(super) fn expose(&mut self, light: &[LinearRgb]) {
+    pub(crate) fn expose(&mut self, light: &[LinearRgb]) {
         self.exposures += 1;
         for (sum, light) in self.light.iter_mut().zip(light) {
             (0..3).for_each(|i| sum[i] += light[i] as f32);

@@ -22,16 +22,20 @@ mod cloud;
 mod color;
 mod film;
 mod optics;
+mod seen;
 mod stress_map;
 #[cfg(test)]
 mod tests;
 mod window;
 
 pub use chains::{Link, Push, draw_links, links};
+pub(crate) use chains::{Pair, links_to, meeting_place, pairs, places_near, pressing, wide_cloud};
+pub(crate) use cloud::Outline;
 pub use cloud::joined;
 pub use color::linear_of_srgb;
 pub use film::Film;
 pub use optics::{LinearRgb, Optics, Phase};
+pub(crate) use seen::{SeenBody, SeenParticle};
 pub use stress_map::{Ray, StressMap};
 pub use window::ImageWindow;
 
@@ -39,6 +43,7 @@ use crate::door::ParticleSnapshot;
 use crate::image::Image;
 use crate::scene::{Polariscope, PolariscopeField};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// What stands between the polarisers.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,54 +100,87 @@ impl OpticalBench {
 
     /// Light on each pixel, rows from the top.
     pub fn light(&self, particles: &ParticleSnapshot) -> Vec<LinearRgb> {
+        let mut picture = self.picture();
+        SeenBody::each(particles, |_| true)
+            .filter_map(|seen| self.light_of(&seen))
+            .for_each(|light| picture.add(&light));
+        self.developed(picture)
+    }
+
+    /// A picture without bodies.
+    pub(crate) fn picture(&self) -> Picture {
         let [width, height] = self.stage.window.size;
-        let layers: Vec<BodyLayer> =
-            stress_maps(particles, &self.stage.window).into_iter().map(|map| self.layer(map)).collect();
-        let mut light = vec![[0.0; 3]; width * height];
-        light.par_chunks_mut(width).enumerate().for_each(|(row, light)| {
-            for (column, light) in light.iter_mut().enumerate() {
-                let (mut covered, mut sum) = (0.0, [0.0; 3]);
-                for layer in &layers {
-                    let Some(ray) = layer.map.ray(column, row).filter(|ray| ray.coverage > 0.0) else {
-                        continue;
-                    };
-                    covered += ray.coverage;
-                    let own = match &layer.orders {
-                        Some(orders) => {
-                            let mut phase = layer.map.phase(orders, column, row);
-                            if self.optics.sees_directions() {
-                                phase.angle = ray.principal_angle();
-                            }
-                            self.optics.light(&phase)
-                        }
-                        None => OPAQUE,
-                    };
-                    (0..3).for_each(|i| sum[i] += ray.coverage * own[i]);
-                }
-                let open = (1.0 - covered).max(0.0);
-                *light = [0, 1, 2].map(|i| (sum[i] + open * self.background[i]) / covered.max(1.0));
-            }
-        });
+        Picture { covered: vec![0.0; width * height], sum: vec![[0.0; 3]; width * height] }
+    }
+
+    /// Light on each pixel of a picture with all its bodies, rows from the top.
+    pub(crate) fn developed(&self, picture: Picture) -> Vec<LinearRgb> {
+        let mut light = picture.sum;
+        for (light, covered) in light.iter_mut().zip(picture.covered) {
+            let open = (1.0 - covered).max(0.0);
+            *light = [0, 1, 2].map(|i| (light[i] + open * self.background[i]) / covered.max(1.0));
+        }
         light
     }
 
-    fn layer(&self, map: StressMap) -> BodyLayer {
+    /// The light of a body; `None` if it is not in the picture.
+    pub(crate) fn light_of(&self, seen: &SeenBody) -> Option<BodyLight> {
+        let map = StressMap::new(seen, &self.stage.window)?;
         let birefringent = self.stage.specimens.contains(&map.body);
-        let orders = birefringent.then(|| map.rays.iter().map(|ray| self.optics.order(ray)).collect());
-        BodyLayer { map, orders }
+        let orders: Option<Vec<f64>> =
+            birefringent.then(|| map.rays.iter().map(|ray| self.optics.order(ray)).collect());
+        let light = |place: [usize; 2], ray: &Ray| match &orders {
+            Some(orders) => {
+                let mut phase = map.phase(orders, place);
+                if self.optics.sees_directions() {
+                    phase.angle = ray.principal_angle();
+                }
+                self.optics.light(&phase)
+            }
+            None => OPAQUE,
+        };
+        let rows = map.rays.par_chunks(map.size[0]).enumerate().map(|(row, rays)| {
+            let first = (map.corner[1] + row) * self.stage.window.size[0] + map.corner[0];
+            let rays = rays.iter().enumerate().filter(|(_, ray)| ray.coverage > 0.0);
+            let pixel =
+                |(column, ray): (usize, &Ray)| (first + column, ray.coverage, light([column, row], ray));
+            rays.map(pixel).collect::<Vec<_>>()
+        });
+        Some(BodyLight(rows.flatten_iter().collect()))
     }
 }
 
-/// A body in the picture, with the fringe order of each ray if it is birefringent.
-struct BodyLayer {
-    map: StressMap,
-    orders: Option<Vec<f64>>,
+/// The pixels of a picture that a body covers, in their order: the share of each that it covers, and its light there.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct BodyLight(Vec<(usize, f64, LinearRgb)>);
+
+impl BodyLight {
+    /// How many they are.
+    pub(crate) fn pixels(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// The light of an instant, while bodies are added to it in their order.
+pub(crate) struct Picture {
+    /// How much of each pixel bodies cover, maybe several times.
+    covered: Vec<f64>,
+    sum: Vec<LinearRgb>,
+}
+
+impl Picture {
+    /// Adds the next body.
+    pub(crate) fn add(&mut self, body: &BodyLight) {
+        for &(pixel, coverage, light) in &body.0 {
+            self.covered[pixel] += coverage;
+            (0..3).for_each(|i| self.sum[pixel][i] += coverage * light[i]);
+        }
+    }
 }
 
 impl StressMap {
-    /// Fringe order and its change across a pixel of the window that the body covers.
-    fn phase(&self, orders: &[f64], column: usize, row: usize) -> Phase {
-        let place = [column - self.corner[0], row - self.corner[1]];
+    /// Fringe order and its change across a pixel that the body covers, by its column and row in the map.
+    fn phase(&self, orders: &[f64], place: [usize; 2]) -> Phase {
         let at = |x: usize, y: usize| {
             let i = y * self.size[0] + x;
             (self.rays[i].coverage > 0.0).then(|| orders[i])
@@ -167,17 +205,18 @@ impl StressMap {
 
 /// The stress of every body that is in the window, on its pixels, in the order of the bodies.
 pub fn stress_maps(particles: &ParticleSnapshot, window: &ImageWindow) -> Vec<StressMap> {
-    cloud::clouds(particles, stress_map::REACH, stress_map::LEAST_PIXELS / window.scale())
-        .iter()
-        .filter_map(|cloud| StressMap::new(cloud, window))
-        .collect()
+    SeenBody::each(particles, |_| true).filter_map(|seen| StressMap::new(&seen, window)).collect()
 }
 
 /// Lower and upper corner of a rectangle around some bodies, with a little room [m]; `None` if they have no particles.
 pub fn bounds(particles: &ParticleSnapshot, specimens: &[usize]) -> Option<[[f64; 2]; 2]> {
-    let clouds = cloud::clouds(particles, stress_map::REACH, 0.0);
-    let chosen = clouds.iter().filter(|cloud| specimens.contains(&cloud.body)).map(|cloud| cloud.bounds);
-    let bounds = chosen.reduce(joined);
+    let chosen = SeenBody::each(particles, |body| specimens.contains(&body));
+    framed(chosen.map(|seen| wide_cloud(&seen).outline))
+}
+
+/// The same around the outlines of bodies, in their order.
+pub(crate) fn framed(outlines: impl Iterator<Item = Outline>) -> Option<[[f64; 2]; 2]> {
+    let bounds = outlines.map(|outline| outline.bounds).reduce(joined);
     bounds.map(|[low, high]| {
         let room = MARGIN * (high[0] - low[0]).max(high[1] - low[1]).max(1e-9);
         [low.map(|x| x - room), high.map(|x| x + room)]

@@ -15,7 +15,8 @@
 //! ```
 
 use super::ImageWindow;
-use super::cloud::Cloud;
+use super::cloud::{Cloud, Outline};
+use super::seen::SeenBody;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -70,9 +71,11 @@ impl Ray {
 
 impl StressMap {
     /// The rays of a window that may meet a body; `None` if all miss it.
-    pub(super) fn new(cloud: &Cloud, window: &ImageWindow) -> Option<Self> {
-        let [left, bottom] = window.pixel(cloud.bounds[0].map(|x| x - cloud.reach));
-        let [right, top] = window.pixel(cloud.bounds[1].map(|x| x + cloud.reach));
+    pub(super) fn new(seen: &SeenBody, window: &ImageWindow) -> Option<Self> {
+        let cloud = Cloud::of(seen, REACH, LEAST_PIXELS / window.scale());
+        let Outline { body, bounds, reach, .. } = cloud.outline;
+        let [left, bottom] = window.pixel(bounds[0].map(|x| x - reach));
+        let [right, top] = window.pixel(bounds[1].map(|x| x + reach));
         let inside = |pixel: f64, axis: usize| pixel.clamp(0.0, window.size[axis] as f64) as usize;
         let corner = [inside(left.floor(), 0), inside(top.floor(), 1)];
         let end = [inside(right.ceil(), 0), inside(bottom.ceil(), 1)];
@@ -85,12 +88,12 @@ impl StressMap {
             let first = window.position(corner[0], corner[1] + row);
             sums.clear();
             sums.resize(rays.len(), FitSums::default());
-            sum_row(cloud, first, (window.scale(), &mut *sums));
+            sum_row(&cloud, first, (window.scale(), &mut *sums));
             for (ray, sums) in rays.iter_mut().zip(&*sums) {
-                *ray = sums.ray(cloud.reach, window.scale());
+                *ray = sums.ray(reach, window.scale());
             }
         });
-        Some(StressMap { body: cloud.body, corner, size, rays })
+        Some(StressMap { body, corner, size, rays })
     }
 
     /// The ray through a pixel of the window, if it is one of the map's.
@@ -115,9 +118,10 @@ struct FitSums {
 
 /// Adds the points of a cloud to the pixels of a row, of which the first is at a place; `scale` is in pixels per metre.
 fn sum_row(cloud: &Cloud, first: [f64; 2], (scale, row): (f64, &mut [FitSums])) {
-    let step = 1.0 / (scale * cloud.reach);
+    let reach = cloud.outline.reach;
+    let step = 1.0 / (scale * reach);
     for point in cloud.across(first[1]) {
-        let [left, dy] = [0, 1].map(|axis| (point.place[axis] - first[axis]) / cloud.reach);
+        let [left, dy] = [0, 1].map(|axis| (point.place[axis] - first[axis]) / reach);
         let half = 1.0 - dy * dy;
         if half <= 0.0 {
             continue;
@@ -125,10 +129,10 @@ fn sum_row(cloud: &Cloud, first: [f64; 2], (scale, row): (f64, &mut [FitSums])) 
         let [a, b, c, d] = point.values;
         let plain = [1.0, a, b, c, d, dy, dy * a, dy * b, dy * c, dy * d, dy * dy];
         let along = [1.0, a, b, c, d, dy];
-        let reach = half.sqrt();
+        let wide = half.sqrt();
         // Pixels whose middle is so near; beyond the row there are none.
-        let start = ((left - reach) / step).ceil().max(0.0) as usize;
-        let end = (((left + reach) / step).floor() + 1.0).clamp(0.0, row.len() as f64) as usize;
+        let start = ((left - wide) / step).ceil().max(0.0) as usize;
+        let end = (((left + wide) / step).floor() + 1.0).clamp(0.0, row.len() as f64) as usize;
         for (column, sums) in row.iter_mut().enumerate().take(end).skip(start) {
             let dx = left - column as f64 * step;
             let gap = (half - dx * dx).max(0.0);

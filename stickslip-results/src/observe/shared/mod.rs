@@ -1,8 +1,10 @@
 //! What the programs of ranks that share a simulation do together: each with the particles that it has.
 
 mod joint_file;
+mod light;
 mod question;
 
+pub(super) use light::{Look, bounds_on_ranks, light_on_ranks};
 pub(super) use question::{Asked, Question, answer};
 pub use question::{WantedStarts, cell_of, counts, has_near, starts};
 
@@ -18,6 +20,7 @@ use crate::door::{GridSnapshot, NotTakenUp, ParticleSnapshot, SavedShare, SavedS
 use crate::ranks::{Message, Ranks, bytes_of, combined, gathered, message_to, read};
 use crate::scene::{SnapshotContent, StartVelocities};
 use joint_file::{JointFile, JointReading, Trouble};
+use light::LightRequest;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -37,6 +40,10 @@ enum Request {
     Grid(GridRequest),
     /// The sections of a checkpoint there, packed or not.
     Sections(PathBuf, bool),
+    /// Where specimens are.
+    Bounds(Look),
+    /// The light of an instant.
+    Light(LightRequest),
     /// Something about all particles.
     Question(Asked),
 }
@@ -67,6 +74,8 @@ fn act(own: &dyn Simulation, ranks: &dyn Ranks, asked: &[u8]) -> Vec<u8> {
             let form = if packed { CheckpointForm::Compressed } else { CheckpointForm::Plain };
             bytes_of(&put_sections(own, ranks, (&path, form)))
         }
+        Request::Bounds(look) => light::bounds(own, ranks, &look),
+        Request::Light(request) => light::light(own, ranks, &request),
         Request::Question(asked) => asked.said(own, ranks),
     }
 }
