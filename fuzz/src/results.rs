@@ -139,9 +139,9 @@ pub fn snapshot(bytes: &[u8]) {
         let Ok(file) = ParticleFile::open(&path) else { return };
         let whole = Results::open(folder).and_then(|results| results.particles(&results.frames()[1]));
         let _ = read_columns(&path);
-        let _ = ParticleFile::open_head(&path).map(|head| head.columns().count());
-        let _ = (0..file.pieces().min(3))
-            .try_for_each(|piece| ParticleFile::open_piece(&path, piece)?.bodies().map(drop));
+        if let Ok(head) = ParticleFile::open_head(&path) {
+            let _ = (0..head.pieces().min(3)).try_for_each(|piece| head.piece(piece)?.bodies().map(drop));
+        }
         let columns: Vec<String> = file.columns().map(|column| column.name).collect();
         let column = |name: &String| format!("/column/1/{name}");
         let addresses: Vec<String> = columns.iter().take(20).map(column).collect();

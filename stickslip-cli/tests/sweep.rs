@@ -64,6 +64,28 @@ fn every_combination_is_run_and_stands_in_the_table() {
     assert_eq!(same[0], same[1], "a run of a sweep is that run");
 }
 
+/// A folder that another sweep has filled is taken over, and the user is told.
+#[test]
+fn another_sweep_in_a_folder_says_so_and_checkpoints_may_be_left_out() {
+    let (workplace, short) = place();
+    let sweep = |friction: &str, more: &[&str]| {
+        let words = [&["sweep", "scene.toml", "--set", friction][..], &short, more].concat();
+        let ran = workplace.run(&words);
+        assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+        ran.stderr
+    };
+    let checkpoints = |run: &str| workplace.path("scene.sweep").join(run).join("checkpoints").exists();
+    let told = sweep("friction=0,0.5", &["--checkpoint-every", "never"]);
+    assert!(!told.contains("note"), "{told}");
+    assert!(!checkpoints("friction=0"));
+    assert!(!sweep("friction=0,0.5", &[]).contains("note"));
+    assert!(checkpoints("friction=0"));
+    let told = sweep("friction=0.1,0.5", &[]);
+    assert!(told.contains("note: scene.sweep had a sweep of another scene or other values"), "{told}");
+    assert_eq!(table(&workplace, "scene.sweep").len(), 2);
+    assert!(workplace.path("scene.sweep/friction=0").exists());
+}
+
 #[test]
 fn a_run_that_fails_is_named_and_the_others_go_on() {
     let (workplace, short) = place();

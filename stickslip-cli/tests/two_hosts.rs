@@ -613,18 +613,16 @@ fn peaks(mut launcher: Child, out: &str) -> (Child, Vec<f64>) {
     (launcher, peaks.into_values().collect())
 }
 
-/// Problem P5 of the bench with two million particles, each of which a load pushes, whose snapshots have the same bytes
-/// from any number of processes; stopped with a checkpoint, and taken up by another number. Columns are named, so that
-/// one process draws no picture.
+/// Problem P5 of the bench with two million particles, whose snapshots have the same bytes from any number of
+/// processes; stopped with a checkpoint, and taken up by another number. Columns are named, so that one process draws
+/// no picture.
 #[test]
 #[ignore = "takes minutes, and some 4 GB"]
 fn memory_of_a_rank_falls_with_their_number() {
     let _turn = one_at_a_time();
     let workplace = Workplace::new();
     let named = "[outputs.snapshots]\ncolumns = [\"velocity\", \"stress\", \"deformation\", \"mass\"]\n";
-    let load =
-        "[[loads]]\nname = \"wind\"\nbody = \"cube\"\nacceleration = [0, \"100 * sin(1000 * t)\", 0]\n";
-    workplace.write("scene.toml", &[include_str!("../../scenes/bench/cube.toml"), named, load].concat());
+    workplace.write("scene.toml", &[include_str!("../../scenes/bench/cube.toml"), named].concat());
     let words = ["run", "scene.toml", "--threads", "1", "--checkpoint-every", "never"];
     let words =
         with(&words, &["--set", "cells=63", "--set", "time.end=0.003", "--set", "outputs.particles=1"]);

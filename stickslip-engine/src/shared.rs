@@ -465,13 +465,24 @@ impl SharedColumns<'_> {
 
     /// The same of one body, of particles with some numbers at a time.
     fn visit_bytes_of_one(&self, body: usize, look: &mut dyn FnMut(&[u8])) -> bool {
-        let mut order: Option<(Vec<u32>, Vec<u32>, u32)> = None;
+        // Places by number, the numbers, and the ranges of these in which any rank has some.
+        let mut order: Option<[Vec<u32>; 3]> = None;
+        let range_of = |number: u32| number / BYTES_OF_AT_A_TIME as u32;
         (self.columns)(body, &mut |numbers, column| {
-            let (order, sorted, end) = order.get_or_insert_with(|| {
-                let order = by_number(numbers);
+            let [order, sorted, ranges] = order.get_or_insert_with(|| {
+                let mut order = by_number(numbers);
+                // What was found may have a number twice.
+                order.sort_by_key(|&place| numbers[place as usize]);
                 let sorted: Vec<u32> = order.iter().map(|&place| numbers[place as usize]).collect();
-                let end = sorted.last().map_or(0, |last| last + 1);
-                (order, sorted, combined(self.ranks, &end, u32::max))
+                let mut own: Vec<u32> = sorted.iter().map(|&number| range_of(number)).collect();
+                own.dedup();
+                let ranges = combined(self.ranks, &own, |mut all: Vec<u32>, others| {
+                    all.extend(others);
+                    all.sort_unstable();
+                    all.dedup();
+                    all
+                });
+                [order, sorted, ranges]
             });
             let (width, mut lines) = (column.width, column.sorted_lines(order));
             look(column.name.as_bytes());
@@ -479,9 +490,9 @@ impl SharedColumns<'_> {
             let own = column.bytes.len().checked_div(width * sorted.len()).unwrap_or_default();
             for _ in 0..combined(self.ranks, &own, usize::max) {
                 let line = lines.next().unwrap_or_default();
-                for first in (0..*end).step_by(BYTES_OF_AT_A_TIME) {
-                    let place = |number: u32| sorted.partition_point(|&other| other < number);
-                    let some = place(first)..place(first.saturating_add(BYTES_OF_AT_A_TIME as u32));
+                for range in &*ranges {
+                    let first = sorted.partition_point(|&number| range_of(number) < *range);
+                    let some = first..sorted.partition_point(|&number| range_of(number) <= *range);
                     let bytes = &line[some.start * width..some.end * width];
                     let own = (sorted[some].to_vec(), ByteBuf::from(bytes));
                     let all = self.gathered(&own);

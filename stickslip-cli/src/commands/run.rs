@@ -108,9 +108,9 @@ pub(super) struct How {
 
 /// A wall time; without one, never.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct WallTime(Option<Duration>);
+pub(super) struct WallTime(pub(super) Option<Duration>);
 
-fn wall_time(text: &str) -> Result<WallTime, String> {
+pub(super) fn wall_time(text: &str) -> Result<WallTime, String> {
     if text.trim() == "never" {
         return Ok(WallTime(None));
     }

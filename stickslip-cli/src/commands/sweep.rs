@@ -1,7 +1,7 @@
 //! `stickslip sweep SCENE --set nu=0.22,0.30`: a family of runs, and one table of what they came to; `stickslip sweep
 //! DIR` goes on with it.
 
-use super::run::default_folder;
+use super::run::{WallTime, default_folder, wall_time};
 use super::{assignment, load, say, stop_on_interrupt};
 use crate::chart::draw;
 use crate::drawing::DrawError;
@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::progress::{FamilyDisplay, terminal};
 use crate::ranks;
 use crate::sweep::{self, Crew, Family, Member, News, Plan, Sweep, SweepRecord, SweepRow, Variation};
+use crate::tell::tell;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use std::path::{Path, PathBuf};
@@ -54,6 +55,17 @@ pub struct Arguments {
     /// Threads of all runs together, in each process; as many as it has processors without this.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["script", "gather"])]
     threads: Option<u16>,
+
+    /// Wall time between the checkpoints of a run, from which it goes on: "10min", "1h 30min"; "never" leaves out the
+    /// one at the end, too.
+    #[arg(
+        long,
+        value_name = "TIME",
+        default_value = "10min",
+        value_parser = wall_time,
+        conflicts_with_all = ["script", "gather"]
+    )]
+    checkpoint_every: WallTime,
 }
 
 fn variation(text: &str) -> Result<Variation, String> {
@@ -106,6 +118,7 @@ impl Arguments {
         };
         let rows: Vec<SweepRow> = members.iter().map(row).collect();
         if !self.goes_on() {
+            self.tell_of_another(&folder, &plan);
             let kept = rows.iter().filter(|row| row.is_finished()).map(|row| row.run.as_str());
             sweep::prepare(&folder, &record, &kept.collect::<Vec<_>>())?;
         }
@@ -118,13 +131,28 @@ impl Arguments {
         let wanted = if self.gather { Vec::new() } else { left(&table) };
         let limits = [self.jobs, self.threads].map(|limit| limit.map(usize::from));
         let text = members[0].1.source.text().to_owned();
-        let family = Family { plan, folder: folder_of_all, scene: (scene, text), runs: wanted.len(), limits };
+        let WallTime(checkpoint_every) = self.checkpoint_every;
+        let (folder_of_all, scene) = (folder_of_all, (scene, text));
+        let family =
+            Family { plan, folder: folder_of_all, scene, runs: wanted.len(), limits, checkpoint_every };
         let crew = family.crew(folder, [ranks::count(), ranks::neighbours()], stop_on_interrupt()?);
         self.run(&crew, (&family, &members), &wanted, &mut table)?;
         if self.only.is_empty() {
             draw_and_tell(&crew, &table)?;
         }
         conclude(&crew, &table, &left(&table))
+    }
+
+    /// Tells the user that the folder has the results of another sweep, if it has.
+    fn tell_of_another(&self, folder: &Path, plan: &Plan) {
+        let before = sweep::read_record(folder).and_then(|record| record.plan);
+        if before.is_some_and(|before| before != *plan) {
+            let folder = folder.display();
+            tell!(
+                "note: {folder} had a sweep of another scene or other values: sweep.csv is made anew, and folders of \
+                   runs that are not of this one stay"
+            );
+        }
     }
 
     /// Whether it goes on with a sweep that there is.

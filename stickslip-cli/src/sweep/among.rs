@@ -30,6 +30,8 @@ pub struct Family {
     pub runs: usize,
     /// Runs at a time and threads of each process, where the user gives them.
     pub limits: [Option<usize>; 2],
+    /// Wall time between the checkpoints of a run; without one there are none.
+    pub checkpoint_every: Option<Duration>,
 }
 
 impl Family {
@@ -41,7 +43,8 @@ impl Family {
         let threads = threads.unwrap_or(processors).max(1);
         let share = self.runs.div_ceil(processes).max(1);
         let jobs = jobs.unwrap_or(threads).clamp(1, share);
-        Crew { jobs, threads: (threads / jobs).max(1), folder, scene: self.scene.0.clone(), stop }
+        let (scene, checkpoint_every) = (self.scene.0.clone(), self.checkpoint_every);
+        Crew { jobs, threads: (threads / jobs).max(1), folder, scene, checkpoint_every, stop }
     }
 }
 

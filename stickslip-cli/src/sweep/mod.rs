@@ -40,12 +40,11 @@ pub struct Crew {
     pub folder: PathBuf,
     /// The scene file, for the record of each run.
     pub scene: PathBuf,
+    /// Wall time between the checkpoints of a run; without one there are none.
+    pub checkpoint_every: Option<Duration>,
     /// Set by whoever wants the runs to stop.
     pub stop: Arc<AtomicBool>,
 }
-
-/// Wall time between checkpoints, as `stickslip run` has it.
-const CHECKPOINT_EVERY: Duration = Duration::from_secs(600);
 
 /// What happens to the run of this number.
 #[derive(Serialize, Deserialize)]
@@ -180,12 +179,13 @@ impl Crew {
     /// As `stickslip run` makes a run of the scene with these settings.
     fn options(&self, out: &Path, (member, loaded): (&Member, &Loaded)) -> RunOptions {
         let text = Some(loaded.source.text().to_owned());
-        let (path, set) = (self.scene.clone(), member.settings.clone());
+        let (path, set, every) = (self.scene.clone(), member.settings.clone(), self.checkpoint_every);
+        let at_end = every.is_some() || loaded.scene.outputs.checkpoints.is_some();
         RunOptions {
             stop: Arc::clone(&self.stop),
             threads: self.threads,
             source: Some(SceneSource { path, set, until: None, text }),
-            checkpoints: Checkpointing { every: Some(CHECKPOINT_EVERY), at_end: true, keep: 2 },
+            checkpoints: Checkpointing { every, at_end, keep: 2 },
             ..RunOptions::new(out)
         }
     }

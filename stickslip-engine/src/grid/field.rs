@@ -274,8 +274,6 @@ struct NodeRun {
     node: usize,
     /// How many.
     count: usize,
-    /// Which of the tile's blocks it is.
-    corner: usize,
 }
 
 /// The nodes of a tile's window with this side. An iterator, for loops over it are compiled where they stand.
@@ -318,7 +316,6 @@ impl<const D: usize> Iterator for NodeRuns<'_, D> {
             place: place + half * S,
             node: self.slots[corner + half] as usize * nodes_per_block(D) + local,
             count: if half == 0 { S } else { self.side - S },
-            corner: corner + half,
         })
     }
 }
@@ -356,7 +353,7 @@ impl<T: Real, const D: usize> Window<T, D> {
         side: usize,
         sought: Sought,
     ) {
-        for NodeRun { place, node, count, .. } in NodeRuns::<D>::new(&tile.slots, side) {
+        for NodeRun { place, node, count } in NodeRuns::<D>::new(&tile.slots, side) {
             for k in 0..count {
                 let (start, mean) = (filtered.get(node + k), means.get(node + k));
                 // SAFETY: the caller keeps writers away from the tile's slots.
@@ -390,7 +387,7 @@ impl<T: Real, const D: usize> Window<T, D> {
     /// No other thread may touch the tile's slots meanwhile.
     #[inline(always)]
     pub unsafe fn add_to<M: Machine<T>>(&self, field: &Disjoint<Node<T, D>>, tile: &Tile<D>, side: usize) {
-        for NodeRun { place, node, count, .. } in NodeRuns::<D>::new(&tile.slots, side) {
+        for NodeRun { place, node, count } in NodeRuns::<D>::new(&tile.slots, side) {
             for k in 0..count {
                 // SAFETY: the caller keeps other threads away from the tile's slots.
                 unsafe { Node::take::<M>(field.get(node + k), &self.sums[place + k]) };
@@ -499,12 +496,21 @@ pub unsafe fn add_corner<T: Real, const D: usize>(
     (slot, corner): (u32, u8),
     side: usize,
 ) {
-    let slots = [slot; 8];
-    let runs = NodeRuns::<D>::new(&slots, side);
-    for NodeRun { place, node, count, .. } in runs.filter(|run| run.corner == usize::from(corner)) {
-        for k in 0..count {
-            // SAFETY: the caller keeps other threads away from the slot.
-            unsafe { Node::take::<Any>(field.get(node + k), &sums[place + k]) };
+    const S: usize = SIDE as usize;
+    let along = |axis: usize| if corner >> (D - 1 - axis) & 1 == 0 { 0..S } else { S..side };
+    let (rows, row) = (if D == 2 { 0..1 } else { along(1) }, along(D - 1));
+    for x in along(0) {
+        for y in rows.clone() {
+            let (place, local) = match D {
+                2 => (x * side, x % S * S),
+                _ => ((x * side + y) * side, (x % S * S + y % S) * S),
+            };
+            let first = slot as usize * nodes_per_block(D) + local;
+            let nodes = (first..).zip(&sums[place + row.start..place + row.end]);
+            for (node, sums) in nodes {
+                // SAFETY: the caller keeps other threads away from the slot.
+                unsafe { Node::take::<Any>(field.get(node), sums) };
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `grid.pvd`: the grid nodes that carry mass through time, for ParaView.
 
-use super::file::{FileSum, OutputError, is_there, secure};
+use super::file::{FileSum, OutputError, secure};
 use super::folder::OutputFolder;
 use super::frames::Frames;
 use super::memory::Memory;
@@ -12,7 +12,8 @@ use super::{GRID, Observer};
 use crate::door::{GridSnapshot, View};
 use crate::scene::{Scene, SeriesFormat, SnapshotContent};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
+use std::fmt::Display;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -35,8 +36,8 @@ pub(super) struct GridObserver {
 enum KeptGrid {
     /// Of one process: in the checkpoint.
     Nodes(GridSnapshot),
-    /// Of ranks: the frame, in a file beside the checkpoint.
-    Frame(PathBuf, FileSum),
+    /// Of ranks: the frame, in a file beside the checkpoint, and what is in that if it could be written.
+    Frame(PathBuf, Option<FileSum>),
 }
 
 impl GridObserver {
@@ -78,9 +79,20 @@ impl GridObserver {
             let sum = self.frames.put_at(&path, |part| written(view, part, &self.content))?;
             secure(&path).map(|()| sum)
         };
-        // A disk that does not take it will not take the checkpoint either, which is no reason to end the run.
-        write().ok().map(|sum| KeptGrid::Frame(path, sum))
+        // That a checkpoint is not whole is no reason to end the run: one that needs it will say so.
+        let sum = write().ok();
+        Some(KeptGrid::Frame(path, sum))
     }
+}
+
+/// Puts a copy of the frame there, in which this was, at another place.
+fn copy_of(path: &Path, sum: Option<FileSum>, part: &Path) -> io::Result<FileSum> {
+    let wrong = |what: &dyn Display| {
+        io::Error::other(format!("the grid at the checkpoint, {}: {what}", path.display()))
+    };
+    fs::copy(path, part).map_err(|error| wrong(&error))?;
+    let copied = FileSum::of(&mut File::open(part)?, u64::MAX)?;
+    if Some(copied) == sum { Ok(copied) } else { Err(wrong(&"it is not as it was written")) }
 }
 
 /// What went into a file of the nodes of all ranks.
@@ -99,7 +111,7 @@ impl Observer for GridObserver {
         match self.kept(view).cloned() {
             Some(KeptGrid::Nodes(grid)) => self.push(time, grid),
             Some(KeptGrid::Frame(path, sum)) => {
-                self.frames.put(time, |part| fs::copy(path, part).map(|_| sum))?;
+                self.frames.put(time, |part| copy_of(&path, sum, part))?;
             }
             None if view.shares().is_empty() => {
                 self.frames.make_room()?;
@@ -128,8 +140,6 @@ impl Observer for GridObserver {
         memory.keep("grid", &mut nodes)?;
         memory.keep("frame", &mut frame)?;
         if memory.is_taking_up() {
-            frame = frame.filter(|(then, _)| *then == steps);
-            frame.iter().try_for_each(|(_, sum)| is_there(&path, Some(sum)))?;
             let nodes = nodes.filter(|(_, grid): &(u64, GridSnapshot)| grid.is_even());
             let nodes = nodes.map(|(steps, grid)| (steps, KeptGrid::Nodes(grid)));
             self.taken_up = nodes.or(frame.map(|(steps, sum)| (steps, KeptGrid::Frame(path, sum))));

@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use crate::check::Warning;
 use crate::door::{RankShare, RelaxationState};
 use crate::scene::{Loaded, Scene, SceneError, load, parse};
-use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
@@ -96,18 +96,42 @@ impl SceneRecord {
         SceneRecord(Recorded::Here(Arc::new(scene.clone())))
     }
 
+    /// What it says of what `X` has, as text is read: without a value of all of it, unless letters must be replaced.
+    ///
+    /// # Errors
+    /// It is not what `X` is.
+    pub(super) fn read<X: DeserializeOwned>(&self) -> serde_json::Result<X> {
+        match &self.0 {
+            Recorded::Read(text) if !may_steer(text.get()) => serde_json::from_str(text.get()),
+            _ => serde_json::from_value(self.value()),
+        }
+    }
+
     /// What it says.
     pub fn value(&self) -> Value {
         match &self.0 {
             Recorded::Here(scene) => Manifest::record(scene),
             Recorded::Read(text) => {
-                let mut value = serde_json::from_str(text.get()).expect("it was read");
+                let mut value = serde_json::from_str(text.get()).unwrap_or_default();
                 replace_control_characters(&mut value);
                 value
             }
         }
     }
 }
+
+/// Whether a letter steers a terminal: it is replaced where a record is read.
+fn steers(letter: char) -> bool {
+    letter.is_control() && !matches!(letter, '\n' | '\r' | '\t')
+}
+
+/// Whether JSON may have such letters, as they are or written out.
+fn may_steer(text: &str) -> bool {
+    text.contains(steers) || ["\\u", "\\b", "\\f"].iter().any(|written| text.contains(written))
+}
+
+/// A key by which the parser of JSON knows what it makes itself.
+const RAW: &str = "$serde_json::private::RawValue";
 
 /// Any JSON, which is read and not kept.
 struct AnyJson;
@@ -155,7 +179,12 @@ impl<'de> Visitor<'de> for AnyJson {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<AnyJson, A::Error> {
-        while map.next_entry::<AnyJson, AnyJson>()?.is_some() {}
+        while let Some(key) = map.next_key::<String>()? {
+            if key == RAW {
+                return Err(A::Error::custom("a key that no scene has"));
+            }
+            map.next_value::<AnyJson>()?;
+        }
         Ok(AnyJson)
     }
 }
@@ -411,9 +440,7 @@ impl Manifest {
         let read = || -> Result<Manifest, ReadProblem> {
             let mut fields: BTreeMap<String, Box<RawValue>> = serde_json::from_slice(&read_bytes(&path)?)?;
             let scene = fields.remove(SCENE);
-            for text in &scene {
-                serde_json::from_str::<AnyJson>(text.get())?;
-            }
+            scene.as_ref().map_or(Ok(AnyJson), |text| serde_json::from_str(text.get()))?;
             let mut record = Map::new();
             for (name, text) in fields {
                 record.insert(name, serde_json::from_str(text.get())?);
@@ -444,7 +471,6 @@ impl Manifest {
 
 /// Puts U+FFFD in the place of each control character in a text of a record; new lines and tabs stay.
 fn replace_control_characters(record: &mut Value) {
-    let steers = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\r' | '\t');
     match record {
         Value::String(text) if text.contains(steers) => *text = text.replace(steers, "\u{fffd}"),
         Value::Array(list) => list.iter_mut().for_each(replace_control_characters),
@@ -473,4 +499,20 @@ fn reference_curves(scene: &Scene) -> Vec<ReferenceCurve> {
             .collect(),
     };
     scene.references.iter().map(curve).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the parser takes for its own would be no JSON to those who ask for the scene.
+    #[test]
+    fn a_scene_in_a_record_is_json_and_nothing_else() {
+        let is_read = |text: &str| serde_json::from_str::<AnyJson>(text).is_ok();
+        assert!(is_read(r#"{"a": [1, -2.5, "b", null, true, {"c": {}}]}"#));
+        for wrong in [r#"{"$serde_json::private::RawValue": 5}"#, "[1e999]", "{", "[1] 2", &"[".repeat(200)] {
+            assert!(!is_read(wrong), "{wrong}");
+        }
+        assert!(!is_read(r#"{"a": [{"$serde_json::private::RawValue": "x"}]}"#));
+    }
 }

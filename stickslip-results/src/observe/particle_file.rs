@@ -1,9 +1,10 @@
 //! A file of particles, opened: who needs few of its columns reads those, one by one.
 
 use super::file::ReadError;
+use super::particles::particles_of;
 use super::vtk::PointArrays;
 use crate::column::{DERIVED, EVERY, IDENTITY, Kind};
-use crate::door::SnapshotColumn;
+use crate::door::{ParticleSnapshot, SnapshotColumn};
 use std::path::Path;
 
 /// A file that [`encode_particles`](super::encode_particles) made. Its columns are unpacked when asked for.
@@ -37,12 +38,18 @@ impl ParticleFile {
         Ok(ParticleFile(PointArrays::open_head(path)?))
     }
 
-    /// Reads the packed bytes of one of its pieces, see [`encode_particles`](super::encode_particles).
+    /// The particles of one of its pieces, see [`encode_particles`](super::encode_particles), whose packed bytes are
+    /// read.
     ///
     /// # Errors
     /// As [`ParticleFile::open`], or there is no such piece.
-    pub fn open_piece(path: &Path, piece: usize) -> Result<Self, ReadError> {
-        Ok(ParticleFile(PointArrays::open_piece(path, piece)?))
+    pub fn piece(&self, piece: usize) -> Result<Self, ReadError> {
+        Ok(ParticleFile(self.0.piece(piece)?))
+    }
+
+    /// All that it holds, see [`read_particles`](super::read_particles).
+    pub(super) fn snapshot(&self) -> Result<ParticleSnapshot, ReadError> {
+        particles_of(&self.0)
     }
 
     /// How many pieces it has.

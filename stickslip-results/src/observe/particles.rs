@@ -176,12 +176,8 @@ pub fn read_particles(path: &Path) -> Result<ParticleSnapshot, ReadError> {
     particles_of(&PointArrays::open(path)?)
 }
 
-/// The same of a piece of the file alone.
-pub(super) fn read_piece(path: &Path, piece: usize) -> Result<ParticleSnapshot, ReadError> {
-    particles_of(&PointArrays::open_piece(path, piece)?)
-}
-
-fn particles_of(file: &PointArrays) -> Result<ParticleSnapshot, ReadError> {
+/// The same of a file that is open.
+pub(super) fn particles_of(file: &PointArrays) -> Result<ParticleSnapshot, ReadError> {
     let [body, number] = IDENTITY;
     let remembered = |name: &str| {
         let (unit, kind, values) = file.described(name)?;
@@ -343,9 +339,10 @@ mod tests {
             let header = String::from_utf8_lossy(&text[..10_000]).into_owned();
             assert_eq!(header.matches("<Piece ").count(), 2, "{header}");
             assert!(read_particles(&path).unwrap() == written, "{compression:?}");
-            let apart = (0..2).map(|piece| read_piece(&path, piece).unwrap()).collect();
+            let head = ParticleFile::open_head(&path).unwrap();
+            let apart = (0..2).map(|piece| head.piece(piece).unwrap().snapshot().unwrap()).collect();
             assert!(ParticleSnapshot::merged(apart) == written, "{compression:?}");
-            assert!(read_piece(&path, 2).is_err());
+            assert!(head.piece(2).is_err());
             PointArrays::open(&path).unwrap().check().unwrap();
         }
         let nothing = ParticleSnapshot::default();

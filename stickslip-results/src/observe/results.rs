@@ -25,7 +25,6 @@ use super::{
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
-use serde::Deserialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -59,8 +58,8 @@ impl Results {
     /// # Errors
     /// Another version of the program wrote it.
     pub fn scene(&self) -> Result<RecordedScene, ReadError> {
-        RecordedScene::deserialize(self.manifest.scene.value())
-            .map_err(|error| ReadProblem::from(error).at(&self.folder.join(Manifest::FILE)))
+        let read = self.manifest.scene.read();
+        read.map_err(|error| ReadProblem::from(error).at(&self.folder.join(Manifest::FILE)))
     }
 
     /// Names of the bodies, in the order of the numbers in snapshots.

@@ -191,12 +191,18 @@ impl Checkpoints {
         };
         if !simulation.shares().is_empty() {
             // Ranks write together, and go on once they have.
-            let Some(rest) = simulation.save_rest() else { return Ok(()) };
+            let Some(rest) = simulation.save_rest() else {
+                Checkpoint::clear_beside(&path);
+                return Ok(());
+            };
             let checkpoint = Checkpoint::new(&self.scene, rest, memory);
             let write = || checkpoint.write_shared((&path, form), simulation);
             let done = prepare(&folder)
                 .and_then(|()| folder.waiting().watch(&path, write))
                 .and_then(|()| Checkpoint::keep_newest(folder.path(), keep));
+            if done.is_err() {
+                Checkpoint::clear_beside(&path);
+            }
             note(done);
             self.last = Instant::now();
             return Ok(());

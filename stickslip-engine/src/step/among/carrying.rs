@@ -3,7 +3,7 @@
 use super::Find;
 use super::taking_up::first_problem;
 use crate::basis::Basis;
-use crate::door::{NotTakenUp, RestoreError, SavedBody, SavedState, Simulation};
+use crate::door::{NotTakenUp, RestoreError, SavedBody, SavedColumn, SavedState, Simulation};
 use crate::lanes::Laned;
 use crate::ranks::{Ranks, combined};
 use crate::scene::{self, Scene, StartVelocities};
@@ -29,7 +29,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     ) -> Result<(), NotTakenUp> {
         let mut state = rest.clone();
         first_problem(&*ranks, fill(&mut state.bodies, find))?;
-        same_columns(&*ranks, &state.bodies)?;
+        check_found(&*ranks, &mut state.bodies)?;
         look(&mut state.bodies);
 
         let here: HashSet<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
@@ -71,19 +71,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 /// Sees bodies with the particles that this rank has found.
 pub(in crate::step) type Look<'a> = &'a mut dyn FnMut(&mut [SavedBody]);
 
-/// Looks whether all ranks have found the same columns of each body.
+/// Looks whether ranks have found the same columns of each body. The state without particles keeps columns of bodies
+/// alone that have none on any rank.
 ///
 /// # Errors
 /// They have not: all say so.
-fn same_columns(ranks: &dyn Ranks, bodies: &[SavedBody]) -> Result<(), NotTakenUp> {
-    // A number that tells them, none of a body of which nothing is here.
-    let of_body = |body: &SavedBody| {
-        let mut hasher = DefaultHasher::new();
-        body.columns.iter().for_each(|column| (&column.name, column.width).hash(&mut hasher));
-        (!body.numbers.is_empty()).then(|| hasher.finish())
-    };
-    let own: (Vec<Option<u64>>, bool) = (bodies.iter().map(of_body).collect(), true);
-    let (_, same) = combined(ranks, &own, |(mut all, mut same), (others, also)| {
+fn check_found(ranks: &dyn Ranks, bodies: &mut [SavedBody]) -> Result<(), NotTakenUp> {
+    // A number that tells its columns, of each body of which there is something.
+    let mut own: (Vec<Option<u64>>, bool) = (Vec::new(), true);
+    for SavedBody { numbers, columns, .. } in &*bodies {
+        let (count, mut hasher) = (numbers.len(), DefaultHasher::new());
+        for SavedColumn { name, width, bytes } in columns.iter().filter(|_| count > 0) {
+            let each = width.saturating_mul(count).max(1);
+            own.1 &= [4, 8].contains(width) && bytes.len().is_multiple_of(each);
+            (name, width, bytes.len() / each).hash(&mut hasher);
+        }
+        own.0.push((count > 0).then(|| hasher.finish()));
+    }
+    let (found, same) = combined(ranks, &own, |(mut all, mut same), (others, also)| {
         same &= also;
         for (one, other) in all.iter_mut().zip(others) {
             same &= one.is_none() || other.is_none() || *one == other;
@@ -91,8 +96,13 @@ fn same_columns(ranks: &dyn Ranks, bodies: &[SavedBody]) -> Result<(), NotTakenU
         }
         (all, same)
     });
-    let differ = || NotTakenUp::Unfound("its particles have not all the same columns".to_string());
-    same.then_some(()).ok_or_else(differ)
+    if !same {
+        return Err(NotTakenUp::Unfound("its particles have not all the same columns".to_string()));
+    }
+    let elsewhere =
+        bodies.iter_mut().zip(found).filter(|(body, found)| found.is_some() && body.numbers.is_empty());
+    elsewhere.for_each(|(body, _)| body.columns.clear());
+    Ok(())
 }
 
 /// Gives bodies the particles that `find` has of them.

@@ -367,6 +367,14 @@ impl Checkpoint {
         fs::rename(path, name).map_err(OutputError::at(path))
     }
 
+    /// Removes what lies beside the place of a checkpoint that is not there.
+    pub fn clear_beside(path: &Path) {
+        if !path.exists() {
+            // What stays goes with the next one that is written.
+            let _ = fs::remove_file(path.with_extension("vtu"));
+        }
+    }
+
     /// Removes all but the newest checkpoints of a run, and what belongs to none of these.
     ///
     /// # Errors

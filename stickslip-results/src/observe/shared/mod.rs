@@ -12,7 +12,7 @@ use super::checkpoint::{CheckpointForm, MOST_PARTICLES, START, Section};
 use super::file::{FileSum, ReadError};
 use super::grid::{count_nodes, encode_nodes, first_in};
 use super::particle_file::ParticleFile;
-use super::particles::{begin, count_by_stretch, encode_piece, is_chosen, read_piece};
+use super::particles::{begin, count_by_stretch, encode_piece, is_chosen};
 use super::pieces::{counts_of_both, cut};
 use super::state_sum::StateSum;
 use super::vtk::{END, PieceSize, VtkFile};
@@ -23,6 +23,7 @@ use joint_file::{JointFile, JointReading, Trouble};
 use light::LightRequest;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf, absolute};
@@ -289,10 +290,11 @@ impl ParticlesThere {
     /// # Errors
     /// It cannot be read.
     pub fn in_snapshot(path: &Path, names: &[String]) -> Result<(Self, Vec<String>), ReadError> {
-        let pieces = ParticleFile::open_head(path)?.pieces();
+        let head = ParticleFile::open_head(path)?;
+        let pieces = head.pieces();
         let mut there = vec![false; names.len()];
         for piece in 0..pieces {
-            for body in ParticleFile::open_piece(path, piece)?.bodies()? {
+            for body in head.piece(piece)?.bodies()? {
                 there.get_mut(body as usize).into_iter().for_each(|there| *there = true);
             }
         }
@@ -345,9 +347,14 @@ fn find(ranks: &dyn Ranks, asked: &[u8], show: &mut dyn FnMut(Vec<SavedShare>)) 
             );
         }
         ParticlesThere::Snapshot(SnapshotPlace { path, pieces, places }) => {
+            let head = OnceCell::new();
             let shares = |piece: usize| {
-                let particles =
-                    read_piece(&path, piece).map_err(|error| io::Error::other(error.problem.to_string()))?;
+                let told = |error: ReadError| io::Error::other(error.problem.to_string());
+                if head.get().is_none() {
+                    let _ = head.set(ParticleFile::open_head(&path).map_err(told)?);
+                }
+                let head: &ParticleFile = head.get().expect("it was opened");
+                let particles = head.piece(piece).and_then(|piece| piece.snapshot()).map_err(told)?;
                 Ok(bytes_of(&SavedShare::of_snapshot(&particles, &places)))
             };
             JointReading::open(ranks, &path).each_share(

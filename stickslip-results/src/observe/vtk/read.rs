@@ -62,30 +62,40 @@ impl PointArrays {
         Ok(points)
     }
 
-    /// Opens a piece of a file by itself: of the others no array is read.
-    pub(in crate::observe) fn open_piece(path: &Path, piece: usize) -> Result<Self, ReadError> {
+    /// A piece of the file by itself: of the others no array is read.
+    pub(in crate::observe) fn piece(&self, piece: usize) -> Result<Self, ReadError> {
         let open = || -> Result<Self, ReadProblem> {
-            let mut file = open_file(path)?;
-            let mut points = Self::head_of(&mut file, path)?;
             let cut = || missing(&format!("complete piece {piece}"));
-            let all = || points.positions.iter().chain(points.arrays.values());
+            let all = || self.positions.iter().chain(self.arrays.values());
             let first = |piece: usize| all().map(|place| place.offsets.get(piece).copied()).min().flatten();
             let (begin, end) = (first(piece).ok_or_else(cut)?, first(piece + 1));
-            if all().any(|place| place.offsets.len() != points.counts.len()) {
+            if all().any(|place| place.offsets.len() != self.counts.len()) {
                 return Err(cut());
             }
-            let start = points.appended.checked_add(begin).ok_or_else(cut)?;
-            file.seek(SeekFrom::Start(start as u64))?;
+            let start = self.appended.checked_add(begin).ok_or_else(cut)?;
             let size = end.map_or(Some(usize::MAX), |end| end.checked_sub(begin)).ok_or_else(cut)?;
-            file.take(size as u64).read_to_end(&mut points.bytes)?;
-            points.counts = vec![points.counts[piece]];
-            for place in points.positions.iter_mut().chain(points.arrays.values_mut()) {
-                place.offsets = vec![place.offsets[piece] - begin];
-            }
-            points.appended = 0;
-            Ok(points)
+            let (mut file, mut bytes) = (open_file(&self.path)?, Vec::new());
+            file.seek(SeekFrom::Start(start as u64))?;
+            file.take(size as u64).read_to_end(&mut bytes)?;
+            let alone = |place: &ArrayPlace| ArrayPlace {
+                kind: place.kind.clone(),
+                components: place.components,
+                offsets: vec![place.offsets[piece] - begin],
+                unit: place.unit.clone(),
+            };
+            Ok(PointArrays {
+                path: self.path.clone(),
+                bytes,
+                appended: 0,
+                compressed: self.compressed,
+                counts: vec![self.counts[piece]],
+                fields: self.fields.clone(),
+                positions: self.positions.as_ref().map(alone),
+                arrays: self.arrays.iter().map(|(name, place)| (name.clone(), alone(place))).collect(),
+                names: self.names.clone(),
+            })
         };
-        open().map_err(|problem| problem.at(path))
+        open().map_err(|problem| problem.at(&self.path))
     }
 
     /// Opens a file and reads what it holds, but no array.
