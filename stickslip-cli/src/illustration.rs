@@ -356,7 +356,8 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     ];
     drawn.extend(measured.into_iter().filter(|name| folder.join(name).exists()));
     let Performance { ranks, particles, .. } = &results.manifest().performance;
-    let too_many = ranks.len() > 1 && *particles > DRAWN_AFTER_RANKS;
+    let are_many = *particles > MOST_PARTICLES_DRAWN || results.body_names().len() > MOST_BODIES_DRAWN;
+    let too_many = ranks.len() > 1 && are_many;
     // The user waits for them.
     let (charted, pictured) = rayon::join(
         || draw_chart(&results, folder),
@@ -379,15 +380,16 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         // One of an earlier end would pass for that of this one.
         let _ = std::fs::remove_file(folder.join("picture.png"));
         told += &format!(
-            "\n  no picture: it takes all particles in one process; `stickslip render {}` draws it",
+            "\n  no picture: it takes all particles and surfaces in one process; `stickslip render {}` draws it",
             folder.display()
         );
     }
     Ok(told)
 }
 
-/// Of results of several processes, so many particles are drawn unasked: a picture takes all of them in one.
-const DRAWN_AFTER_RANKS: usize = 1 << 18;
+/// Of results of several processes, so many particles and bodies are drawn unasked: a picture takes all of them in one.
+const MOST_PARTICLES_DRAWN: usize = 1 << 18;
+const MOST_BODIES_DRAWN: usize = 1 << 12;
 
 /// Draws what the scene is about into `plot.png`; false if there is nothing to draw.
 fn draw_chart(results: &Results, folder: &Path) -> Result<bool, Failure> {

@@ -16,7 +16,7 @@ use crate::door::{
 };
 use crate::lanes::Processor;
 use crate::particles::by_number;
-use crate::ranks::{Ranks, Threads, added, all_of, bytes_of, combined, read};
+use crate::ranks::{Ranks, Threads, added, all_of, bytes_of, combined, read, told_first};
 use crate::rigid::Pose;
 use crate::scene::{Problem, Scene, StartVelocities};
 use crate::step::{self, Find, ParticleLoop, Shareable};
@@ -163,7 +163,7 @@ impl Part {
 
     /// What each rank says, by rank, for the first.
     fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
-        all_of(self.ranks.tell_first(&bytes_of(said)))
+        told_first(&*self.ranks, said)
     }
 
     /// Does what the first rank asks; false if that was the last.
@@ -408,11 +408,6 @@ fn visit_found(ranks: &dyn Ranks, bodies: &mut [SavedBody], look: &mut dyn FnMut
 }
 
 impl SharedColumns<'_> {
-    /// What each rank says, by rank, for the first.
-    fn gathered<X: Serialize + DeserializeOwned>(&self, said: &X) -> Vec<X> {
-        all_of(self.ranks.tell_first(&bytes_of(said)))
-    }
-
     /// As [`Simulation::visit_bytes`]: of several small bodies at a time, and of a large one by itself.
     fn visit_bytes(&self, bodies: Range<usize>, look: &mut dyn FnMut(usize, &[u8])) -> bool {
         let (mut first, mut has_state) = (bodies.start, true);
@@ -446,7 +441,7 @@ impl SharedColumns<'_> {
             names.push(share.columns.iter().map(SavedColumn::emptied).collect::<Vec<_>>());
             own.extend(Some(share).filter(|share| !share.numbers.is_empty()));
         }
-        let all: Vec<Vec<SavedShare>> = self.gathered(&own);
+        let all: Vec<Vec<SavedShare>> = told_first(self.ranks, &own);
         let mut all: Vec<_> = all.into_iter().map(|shares| shares.into_iter().peekable()).collect();
         // Only the first rank is told.
         let told = if all.is_empty() { 0..0 } else { bodies };
@@ -495,7 +490,7 @@ impl SharedColumns<'_> {
                     let some = first..sorted.partition_point(|&number| range_of(number) <= *range);
                     let bytes = &line[some.start * width..some.end * width];
                     let own = (sorted[some].to_vec(), ByteBuf::from(bytes));
-                    let all = self.gathered(&own);
+                    let all = told_first(self.ranks, &own);
                     let mut rows: Vec<(u32, &[u8])> = all
                         .iter()
                         .flat_map(|(numbers, bytes)| numbers.iter().copied().zip(bytes.chunks_exact(width)))

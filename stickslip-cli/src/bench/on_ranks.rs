@@ -235,8 +235,8 @@ fn side_by_side(order: &Order, count: usize) -> Result<Vec<BenchSample>, Failure
     samples.into_iter().collect()
 }
 
-/// A block, and what the other rank has: as many particles in the same places, in grains of eight each or in strings of
-/// such grains.
+/// A block, and what the other rank has: as many particles in the same places, each a grain or in strings of such
+/// grains. There are so many that what each of them costs the block's rank can be told from noise.
 const BLOCK: &str = r#"
 [space]
 dimension = "3d"
@@ -252,15 +252,16 @@ material = "sand"
 shape.box = { min = [-48, 0, 0], max = [-32, 16, 16] }
 [[bodies]]
 material = "sand"
+particles_per_side = 1
 "#;
 const GRAINS: &str = r#"
 name = "grain {i} {j} {k}"
-repeat = { i = 16, j = 16, k = 16 }
+repeat = { i = 32, j = 32, k = 32 }
 shape.box = { min = ["4 * i + 1", "4 * j + 1", "4 * k + 1"], max = ["4 * i + 2", "4 * j + 2", "4 * k + 2"] }
 "#;
 
 /// As many grains on each string.
-const ON_A_STRING: usize = 16;
+const ON_A_STRING: usize = 32;
 
 /// The same grains on strings along the last axis, a body each.
 fn strings_of_grains() -> String {
@@ -271,7 +272,7 @@ fn strings_of_grains() -> String {
     };
     let grains: Vec<String> = (0..ON_A_STRING).map(grain).collect();
     format!(
-        "name = \"string {{i}} {{j}}\"\nrepeat = {{ i = 16, j = 16 }}\nshape.union = [{}]\n",
+        "name = \"string {{i}} {{j}}\"\nrepeat = {{ i = 32, j = 32 }}\nshape.union = [{}]\n",
         grains.join(", ")
     )
 }
@@ -314,7 +315,7 @@ mod tests {
         let parse =
             |other: &str| stickslip::scene::parse("bench", &[BLOCK, other].concat(), &[]).unwrap().scene;
         let [few, many] = [&*strings_of_grains(), GRAINS].map(parse);
-        assert_eq!([few.bodies.len(), many.bodies.len()], [1 + 256, 1 + 4096]);
+        assert_eq!([few.bodies.len(), many.bodies.len()], [1 + 1024, 1 + 32_768]);
         let particles = [&few, &many].map(|scene| stickslip::check::report(scene).unwrap().particles);
         assert_eq!(particles, [2 * 32_768; 2]);
     }

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::thread::{available_parallelism, sleep};
 use std::time::Duration;
 use stickslip::observe::SceneSource;
-use stickslip::ranks::{Ranks, all_of, bytes_of, read};
+use stickslip::ranks::{Ranks, all_of, bytes_of, read, told_first};
 use stickslip::scene::Loaded;
 
 /// Wall time between two talks of the processes.
@@ -102,7 +102,7 @@ pub fn lead(
     scene_of: &(dyn Fn(usize) -> Result<Arc<(Member, Loaded)>, String> + Sync),
     mut listen: impl FnMut(News),
 ) {
-    let room = all_of(ranks.tell_first(&bytes_of(&crew.jobs)));
+    let room = told_first(ranks, &crew.jobs);
     let mut desk = Desk { wanted: wanted.iter(), room, out: 0 };
     crew.work(scene_of, |begin, news| {
         loop {

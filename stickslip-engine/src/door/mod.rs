@@ -38,7 +38,7 @@ pub trait View {
     fn step_limit(&self) -> Option<StepLimit> {
         None
     }
-    /// Each body's mass, motion and energy now, in the order of the scene.
+    /// Each body's mass, motion and energy now, in the order of the scene; on all ranks but the first nothing.
     fn bodies(&self) -> Vec<BodyState>;
     /// Where each body is that is rigid, in the order of the scene; of simulations that know none, nothing.
     fn poses(&self) -> Vec<Option<Pose>> {

@@ -4,7 +4,7 @@
 //! its own block and to the next one along each axis, as far as its particles reach,
 //! since no basis reaches more than four nodes.
 
-use super::border::{Border, ForeignTile, Mirrors, Traffic};
+use super::border::{Border, Cut, ForeignTile, Mirrors, Traffic};
 use super::cell_list::{CellList, CellLists, GuestList, block_of, corner_block, key, reached_blocks};
 use super::{Nodes, Periods, cells_at, cells_reaching, locate, nodes_per_block};
 use crate::ranks::{Message, message_to};
@@ -84,6 +84,17 @@ pub struct Emigrant {
     pub particle: u32,
     /// Where it goes.
     pub rank: usize,
+}
+
+/// A block of this rank's tiles that another rank holds, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SentBlock<const D: usize> {
+    /// The block.
+    pub block: [i32; D],
+    /// Place of the other rank in [`Border::outgoing`].
+    pub to: usize,
+    /// Along which axes that rank has the first layers only.
+    pub cut: Cut,
 }
 
 /// Most tiles of a small body.
@@ -588,19 +599,23 @@ impl<const D: usize> ActiveBlocks<D> {
         self.border.as_deref().is_some_and(meets)
     }
 
-    /// Blocks of this rank's tiles that other ranks hold, too, sorted.
-    pub fn blocks_sent(&self) -> Vec<[i32; D]> {
-        let border = self.border.iter();
-        let mut blocks: Vec<[i32; D]> = border
-            .flat_map(|border| {
-                let windows = border.outgoing.iter().flat_map(|traffic| &traffic.windows);
-                windows.flat_map(|window| {
-                    let home = self.tiles[border.kept[window.place as usize] as usize].block;
-                    let corners = (0..1 << D).filter(|corner| window.corners >> corner & 1 == 1);
-                    corners.map(move |corner| self.periods.wrapped(corner_block(home, corner)))
-                })
-            })
-            .collect();
+    /// Blocks of this rank's tiles that other ranks hold, too, sorted; once for each of these.
+    pub fn blocks_sent(&self) -> Vec<SentBlock<D>> {
+        let outgoing = self
+            .border
+            .iter()
+            .flat_map(|border| border.outgoing.iter().enumerate().map(move |to| (border, to)));
+        let mut blocks: Vec<SentBlock<D>> = Vec::new();
+        for (border, (to, traffic)) in outgoing {
+            for window in &traffic.windows {
+                let home = self.tiles[border.kept[window.place as usize] as usize].block;
+                let corners = (0..1 << D).filter(|corner| window.corners >> corner & 1 == 1);
+                blocks.extend(corners.map(|corner| {
+                    let block = self.periods.wrapped(corner_block(home, corner));
+                    SentBlock { block, to, cut: window.cuts[corner] }
+                }));
+            }
+        }
         blocks.sort_unstable();
         blocks.dedup();
         blocks

@@ -426,6 +426,12 @@ fn layers<const D: usize>((corner, cut): (usize, u8), side: usize, axis: usize) 
     }
 }
 
+/// Whether a node of a block is in its first layers along the axes of a cut, where windows have this side.
+pub fn is_within<const D: usize>(local: usize, cut: u8, side: usize) -> bool {
+    let place: [i32; D] = node_at([0; D], local);
+    (0..D).all(|axis| cut >> (D - 1 - axis) & 1 == 0 || place[axis] < side as i32 - SIDE)
+}
+
 /// Cells of a tile, a bit each, whose particles reach such nodes.
 pub fn cells_at<const D: usize>(corner: usize, cut: u8, side: usize) -> u64 {
     let reach = side as i32 - SIDE;
@@ -584,5 +590,35 @@ impl<'a, X> Disjoint<'a, X> {
         assert!(i < self.len, "an index of the slice");
         // SAFETY: in bounds, and the caller holds the only reference.
         unsafe { &mut *self.start.add(i) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The nodes of a block that one rank sends windows of are those of which it tells what else acts there.
+    fn cuts_agree<const D: usize>() {
+        for side in SIDE as usize + 1..2 * SIDE as usize {
+            for (corner, cut) in (0..1 << D).flat_map(|corner| (0..1 << D).map(move |cut| (corner, cut))) {
+                let local = |node: usize| -> Option<usize> {
+                    let place = |axis: usize| (node / side.pow((D - 1 - axis) as u32) % side) as i32;
+                    let at = |axis: usize| place(axis) - SIDE * (corner >> (D - 1 - axis) & 1) as i32;
+                    let inside = (0..D).all(|axis| (0..SIDE).contains(&at(axis)));
+                    inside.then(|| (0..D).fold(0, |local, axis| SIDE as usize * local + at(axis) as usize))
+                };
+                let wanted =
+                    |node: &usize| local(*node).is_some_and(|local| is_within::<D>(local, cut, side));
+                let wanted: Vec<usize> = (0..side.pow(D as u32)).filter(wanted).collect();
+                let sent: Vec<usize> = nodes_at::<D>(corner, cut as u8, side).collect();
+                assert_eq!(sent, wanted, "corner {corner}, cut {cut}, side {side}");
+            }
+        }
+    }
+
+    #[test]
+    fn nodes_that_are_sent_are_within_the_cut() {
+        cuts_agree::<2>();
+        cuts_agree::<3>();
     }
 }

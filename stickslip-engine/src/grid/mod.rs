@@ -9,12 +9,12 @@ mod cell_list;
 mod field;
 mod periods;
 
-pub use active_blocks::{ActiveBlocks, Blocks, Emigrant, SharedBlock, Tile};
+pub use active_blocks::{ActiveBlocks, Blocks, Emigrant, SentBlock, SharedBlock, Tile};
 pub use border::{Border, BorderSlot, Cut, ForeignTile, Giver, Mirrors, Traffic};
 pub use cell_list::{MOST_CELLS, addressable};
 pub use field::{
     Disjoint, Field, NODE_VALUES, Node, NodeSums, NodeValues, Sought, WINDOW_NODES, Window, add_at,
-    add_corner, cells_at, cells_reaching, count_at, nodes_at, window_side,
+    add_corner, cells_at, cells_reaching, count_at, is_within, nodes_at, window_side,
 };
 
 pub use periods::Periods;

@@ -77,6 +77,11 @@ pub fn all_of<X: DeserializeOwned>(said: Vec<Vec<u8>>) -> Vec<X> {
     said.into_iter().map(|said| read(&said)).collect()
 }
 
+/// What each rank says, by rank, on the first; on the others nothing.
+pub fn told_first<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X) -> Vec<X> {
+    all_of(ranks.tell_first(&bytes_of(said)))
+}
+
 /// What a rank sent to others, and how long it waited for them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SentAndWaited {

@@ -527,7 +527,7 @@ impl<T: Real, const D: usize> NodeLoad<T, D> {
 }
 
 /// The load of a point and its number among all points of that, by its place among those here.
-fn key_of(loads: &[LoadPoints], [load, point]: [u32; 2]) -> [u32; 2] {
+pub(super) fn key_of(loads: &[LoadPoints], [load, point]: [u32; 2]) -> [u32; 2] {
     [load, loads[load as usize].points[point as usize].number]
 }
 

@@ -76,11 +76,12 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Kinetic and strain energy of the deformable bodies [J].
     fn energies(&self) -> [f64; 2] {
-        let (bodies, totals) = (&self.state.bodies, self.totals());
-        let free = bodies.iter().zip(&*totals).filter(|(body, _)| !body.is_rigid());
-        free.fold([0.0; 2], |[kinetic, strain], (_, totals)| {
+        let totals = self.totals();
+        let free = totals.iter().filter(|(body, _)| !self.state.bodies[*body].is_rigid());
+        // The first rank knows the totals of all bodies.
+        self.first_says(free.fold([0.0; 2], |[kinetic, strain], (_, totals)| {
             [kinetic + totals.kinetic, strain + totals.strain]
-        })
+        }))
     }
 
     /// Takes all velocities from the deformable bodies.

@@ -108,6 +108,15 @@ pub struct State<T, const D: usize> {
     pub phase: u64,
 }
 
+/// What is known of bodies, in their order.
+pub type ByBody<X> = [(usize, X)];
+
+/// What is known of a body, if anything is.
+pub fn of_body<X>(all: &ByBody<X>, body: usize) -> Option<&X> {
+    let place = all.binary_search_by_key(&body, |(body, _)| *body).ok()?;
+    Some(&all[place].1)
+}
+
 /// Lists, grids and room to work in, all of which follow from the state: dropping them changes no step.
 pub struct Workspace<T, const D: usize> {
     /// Cell lists of the particles, and the active blocks.
@@ -158,7 +167,7 @@ pub struct Workspace<T, const D: usize> {
     /// Room for sums over the nodes of each block.
     pub block_sums: Vec<NodeTotals>,
     /// What the particles of each body add up to since the last step, once somebody has asked.
-    pub totals: Mutex<Option<Arc<[Totals]>>>,
+    pub totals: Mutex<Option<Arc<ByBody<Totals>>>>,
     /// What threads work with.
     pub threads: Threads<T, D>,
 }

@@ -4,6 +4,7 @@ use super::Engine;
 use super::loads;
 use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
+use super::state::{ByBody, of_body};
 use super::walls::WallSums;
 use crate::basis::Basis;
 use crate::body::{Body, Particle, Totals};
@@ -105,11 +106,12 @@ impl<T: Laned, const D: usize> ColumnSource for SnapshotRows<'_, T, D> {
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// What the particles of each body add up to, summed once a step for whoever asks.
-    pub(super) fn totals(&self) -> Arc<[Totals]> {
+    /// What the particles of each body add up to, by body, summed once a step for whoever asks: on the first of several
+    /// ranks of all, on the others of those of which they have particles.
+    pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let bodies = &self.state.bodies;
-        let sum = |range: Range<usize>| bodies[range.start].totals();
+        let sum = |range: Range<usize>| (range.start, bodies[range.start].totals());
         known
             .get_or_insert_with(|| match &self.among {
                 Some(among) => among.totals(bodies),
@@ -184,6 +186,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
     fn bodies(&self) -> Vec<BodyState> {
         let all = self.totals();
         let spins = self.among.as_ref().map(|among| among.spins(&self.state.bodies, &all));
+        if self.among.as_ref().is_some_and(|among| among.ranks.rank() > 0) {
+            return Vec::new();
+        }
         (self.state.bodies.iter().enumerate())
             .map(|(i, body)| {
                 if let Some(motion) = self.without_bounds(i) {
@@ -210,16 +215,18 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                         strain: 0.0,
                     };
                 }
-                let totals = &all[i];
-                if totals.mass == 0.0 {
-                    // All its particles have left.
-                    return BodyState::default();
-                }
+                // Else all its particles have left.
+                let found = of_body(&all, i).filter(|totals| totals.mass > 0.0);
+                let Some(totals) = found else { return BodyState::default() };
+                let spin = match &spins {
+                    Some(spins) => *of_body(spins, i).expect("what has a mass turns somehow"),
+                    None => body.spin(totals),
+                };
                 BodyState {
                     mass: totals.mass,
                     position: totals.first_moment.map(|x| x / totals.mass),
                     velocity: totals.momentum.map(|p| p / totals.mass),
-                    spin: spins.as_ref().map_or_else(|| body.spin(totals), |spins| spins[i]),
+                    spin,
                     angular_momentum: totals.angular_momentum,
                     kinetic: totals.kinetic,
                     strain: totals.strain,
@@ -263,7 +270,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             let orbit = cross(motion.center, free.state.momentum);
             ledger.angular_momentum = add(ledger.angular_momentum, add(orbit, free.state.angular_momentum));
         }
-        for (_, totals) in self.state.bodies.iter().zip(&*all).filter(|(body, _)| !body.is_rigid()) {
+        for (_, totals) in all.iter().filter(|(body, _)| !self.state.bodies[*body].is_rigid()) {
             ledger.kinetic += totals.kinetic;
             ledger.strain += totals.strain;
             ledger.plastic += totals.plastic;
@@ -279,7 +286,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
             + ledger.plastic
             + ledger.damping
             - ledger.external_work;
-        ledger
+        // The first rank knows the totals of all bodies.
+        self.first_says(ledger)
     }
 
     fn relaxation(&self) -> Option<RelaxationState> {

@@ -105,10 +105,12 @@ fn continuing_faces(scene: &Scene) -> Vec<Mirror> {
         .collect()
 }
 
-/// Unit vectors along which a body is measured: that to its surface, the axes and their diagonals.
+/// Unit vectors along which a body is measured, to and fro: that to its surface, the axes and their diagonals.
 fn ways(gradient: [f64; 3], axes: usize) -> Vec<[f64; 3]> {
     let unit = |way: [f64; 3]| Vector(way).norm();
-    let lattice = (0..3_i32.pow(axes as u32)).map(|i| {
+    // The others are the opposite of these.
+    let all = 3_i32.pow(axes as u32);
+    let lattice = (all / 2 + 1..all).map(|i| {
         std::array::from_fn(|k| if k < axes { f64::from(i / 3_i32.pow(k as u32) % 3 - 1) } else { 0.0 })
     });
     lattice.chain([gradient]).filter(|&way| unit(way) > 0.5).map(|way| way.map(|x| x / unit(way))).collect()

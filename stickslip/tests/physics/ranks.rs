@@ -43,10 +43,10 @@ fn contacts(simulation: &dyn Simulation) -> Vec<([usize; 2], String)> {
     all.iter().map(|contact| ([contact.body_a, contact.body_b], format!("{contact:?}"))).collect()
 }
 
-/// What everybody knows of the run, likewise.
-fn known(simulation: &dyn Simulation) -> String {
+/// What everybody knows of the run, likewise, and what one process and the first rank know of bodies.
+fn known(simulation: &dyn Simulation) -> [String; 2] {
     let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
-    format!("{} {ledger:?} {bodies:?} {:?}", simulation.time(), simulation.relaxation())
+    [format!("{} {ledger:?} {:?}", simulation.time(), simulation.relaxation()), format!("{bodies:?}")]
 }
 
 /// What each of so many ranks says, which have a thread each.
@@ -86,8 +86,10 @@ fn compare(name: &str, text: &str, steps: usize) {
         assert_eq!(together.len(), wanted.len(), "{name}: {count} ranks have every particle once");
         let other = together.iter().zip(&wanted).find(|(one, other)| one != other);
         assert!(other.is_none(), "{name}: {count} ranks differ from one, {other:?}");
-        for (_, known, _) in &said {
-            assert_eq!(known, &known_alone, "{name}: {count} ranks know other sums than one");
+        let (_, [_, bodies], _) = &said[0];
+        assert_eq!(bodies, &known_alone[1], "{name}: the first of {count} ranks knows other bodies than one");
+        for (_, [known, _], _) in &said {
+            assert_eq!(known, &known_alone[0], "{name}: {count} ranks know other sums than one");
         }
         let mut met_together: Vec<_> = said.into_iter().flat_map(|(.., contacts)| contacts).collect();
         met_together.sort_unstable();
@@ -171,6 +173,36 @@ fn by_all_contact_laws() {
 fn in_space() {
     compare("gimp, modified-last", &crowd("3d", "gimp", "modified-last"), 100);
     compare("linear, first", &crowd("3d", "linear", "first"), 60);
+}
+
+/// Bodies that are pulled, pressed and held at every particle, or all around.
+#[test]
+fn with_loads() {
+    let loaded = |text: &str, along_z: &str| {
+        let loads = format!(
+            r#"
+            [[loads]]
+            body = "ball"
+            acceleration = [3, -20{along_z}]
+            [[loads]]
+            body = "patch"
+            pressure = 2000
+            [[supports]]
+            body = "block"
+            on = "volume"
+            stiffness = 1e5
+            dashpot = 100
+            "#
+        );
+        [text, &loads].concat()
+    };
+    let plane = loaded(&crowd("plane-strain", "gimp", "modified-last"), "");
+    for basis in ["linear", "spline", "cubic", "cpdi"] {
+        compare(&format!("loads, {basis}"), &plane.replace("\"gimp\"", &format!("\"{basis}\"")), 100);
+    }
+    compare("loads, first", &plane.replace("\"modified-last\"", "\"first\""), 100);
+    compare("loads, periodic", &periodic(&plane), 200);
+    compare("loads in space", &loaded(&crowd("3d", "gimp", "modified-last"), ", 5"), 60);
 }
 
 /// A particle that leaves the domain ends the run of all ranks, with one and the same error.

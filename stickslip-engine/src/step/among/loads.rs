@@ -1,10 +1,10 @@
 //! Loads on bodies that ranks share: a node takes what acts on the points of all ranks.
 
 use super::super::Engine;
-use super::super::loads::{ForeignPoint, LoadedNode, LoadedPoint, UNKNOWN};
+use super::super::loads::{ForeignPoint, LoadedNode, LoadedPoint, UNKNOWN, key_of};
 use crate::basis::Basis;
 use crate::exact::ExactSum;
-use crate::grid::{node_at, nodes_per_block};
+use crate::grid::{SentBlock, is_within, node_at, nodes_per_block, window_side};
 use crate::lanes::Laned;
 use crate::load::{LoadPoints, PointForce};
 use crate::part::PartPoint;
@@ -13,15 +13,18 @@ use crate::tensor::Vector;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A point at a node that other ranks have, too.
+/// A node that moves a point: its place, the axes along which it is a mirror image, and N_i.
+type SentNode = ([i32; 3], u32, f64);
+
+/// A point at nodes that another rank has, too.
 #[derive(Serialize, Deserialize)]
 struct SentPoint {
     /// Its load, and its number among the points of that.
     key: [u32; 2],
     /// Force, inertia, springs and velocity of a support, see [`PointForce`].
     felt: [[f64; 3]; 4],
-    /// The nodes that move it, the axes along which they are mirror images, and N_i.
-    nodes: Vec<([i32; 3], u32, f64)>,
+    /// Those of the nodes that the other rank has.
+    nodes: Vec<SentNode>,
 }
 
 /// A point whose particle moves to another rank, and its load.
@@ -105,50 +108,47 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
     }
 
-    /// Tells other ranks of the points at nodes that they have, too, and takes note of theirs.
+    /// Tells each other rank of the points at nodes that it has, too, and takes note of theirs.
     pub(in super::super) fn share_points(&mut self) {
         let Some(among) = &self.among else { return };
         let (active, room) = (&self.workspace.active, &mut self.workspace.loads);
         room.foreign.clear();
-        let nodes_here = &self.workspace.field.nodes;
         let Some(border) = active.border.as_deref() else { return };
-        let n = nodes_per_block(D);
-        // Blocks of this rank's tiles that others hold, too: with a tile of any body.
+        let (n, side) = (nodes_per_block(D), window_side(B::WIDTH));
         let blocks = active.blocks_sent();
-        let is_shared = |node: &LoadedNode<T>| {
-            let (_, block) = active.slots[node.index as usize / n];
-            blocks.binary_search(&block).is_ok()
-        };
-        let place = |index: u32| {
-            let (_, block) = active.slots[index as usize / n];
-            let node: [i32; D] = node_at(block, index as usize % n);
-            std::array::from_fn(|k| if k < D { node[k] } else { 0 })
-        };
-        let shared =
-            room.points.iter().zip(&room.numbers).filter(|(point, _)| point.nodes.iter().any(is_shared));
-        let sent: Vec<SentPoint> = shared
-            .map(|(LoadedPoint { felt, nodes, .. }, &[load, point])| SentPoint {
-                key: [load, self.settings.loads[load as usize].points[point as usize].number],
-                felt: [felt.force, felt.inertia, felt.spring, felt.speed].map(|felt| felt.space()),
-                nodes: (nodes.iter())
-                    .map(|node| (place(node.index), node.mirrored, node.weight.f64()))
-                    .collect(),
-            })
-            .collect();
-        let message = bytes_of(&sent);
-        let to = border.outgoing.iter().filter(|_| !sent.is_empty());
-        let messages: Vec<Message> = to.map(|traffic| (traffic.rank, message.clone())).collect();
+        let mut sent: Vec<Vec<SentPoint>> = border.outgoing.iter().map(|_| Vec::new()).collect();
+        let mut wanted: Vec<(usize, SentNode)> = Vec::new();
+        for (LoadedPoint { felt, nodes, .. }, &number) in room.points.iter().zip(&room.numbers) {
+            wanted.clear();
+            for &LoadedNode { index, mirrored, weight } in nodes {
+                let (slot, local) = (index as usize / n, index as usize % n);
+                let (_, block) = active.slots[slot];
+                let first = blocks.partition_point(|there| there.block < block);
+                let there = blocks[first..].iter().take_while(|there| there.block == block);
+                for SentBlock { to, .. } in there.filter(|there| is_within::<D>(local, there.cut, side)) {
+                    let place: [i32; D] = node_at(block, local);
+                    let place = std::array::from_fn(|k| if k < D { place[k] } else { 0 });
+                    wanted.push((*to, (place, mirrored, weight.f64())));
+                }
+            }
+            wanted.sort_by_key(|(to, _)| *to);
+            for nodes in wanted.chunk_by(|a, b| a.0 == b.0) {
+                sent[nodes[0].0].push(SentPoint {
+                    key: key_of(&self.settings.loads, number),
+                    felt: [felt.force, felt.inertia, felt.spring, felt.speed].map(|felt| felt.space()),
+                    nodes: nodes.iter().map(|(_, node)| *node).collect(),
+                });
+            }
+        }
+        let to = border.outgoing.iter().zip(sent).filter(|(_, sent)| !sent.is_empty());
+        let messages: Vec<Message> = to.map(|(traffic, sent)| (traffic.rank, bytes_of(&sent))).collect();
         for (_, message) in among.ranks.exchange(messages) {
             for SentPoint { key, felt, nodes } in read::<Vec<SentPoint>>(&message) {
                 let body = self.settings.loads[key[0] as usize].body;
-                let here = nodes.into_iter().filter_map(|(node, mirrored, weight)| {
-                    // One without mass is beyond what this rank has of the block.
-                    let index = active.node_index(body, std::array::from_fn(|k| node[k]))?;
-                    (nodes_here[index].mass > T::ZERO).then(|| LoadedNode {
-                        index: index as u32,
-                        mirrored,
-                        weight: T::of(weight),
-                    })
+                let here = nodes.into_iter().map(|(node, mirrored, weight)| {
+                    let index = active.node_index(body, std::array::from_fn(|k| node[k]));
+                    let index = index.expect("nodes are sent to those who have them") as u32;
+                    LoadedNode { index, mirrored, weight: T::of(weight) }
                 });
                 let [force, inertia, spring, speed] = felt.map(Vector::of);
                 let felt = PointForce { force, inertia, spring, speed, ..PointForce::default() };

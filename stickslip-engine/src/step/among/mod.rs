@@ -30,8 +30,8 @@ use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, Shown, number_of, write_number};
 use crate::ranks::{
-    BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, all_of, bytes_of, combined,
-    gathered, largest, message_to, read,
+    BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, bytes_of, combined, gathered,
+    largest, message_to, read, told_first,
 };
 use crate::scene::{self, BodyMotion, Face, Load, NamedMaterial, OutsideValue, Problem, Scene};
 use crate::tensor::Real;
@@ -383,7 +383,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What each rank says, for the first; what this one says, where there are no others.
     pub(super) fn told_first<X: Serialize + DeserializeOwned>(&self, said: X) -> Vec<X> {
         let Some(among) = &self.among else { return vec![said] };
-        all_of(among.ranks.tell_first(&bytes_of(&said)))
+        told_first(&*among.ranks, &said)
+    }
+
+    /// What the first rank says; what this one says, where there are no others.
+    pub(super) fn first_says<X: Serialize + DeserializeOwned>(&self, said: X) -> X {
+        let Some(among) = &self.among else { return said };
+        read(&among.ranks.hear_first(&bytes_of(&said)))
     }
 
     /// How many particles each body has on all ranks.

@@ -1,12 +1,11 @@
 //! What bodies on several ranks add up to. The sums of a body go to the rank where it began, which rounds them once.
 
+use super::super::state::{ByBody, of_body};
 use super::Among;
 use crate::body::{Body, TotalSums, Totals, TurningSums};
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
-use crate::ranks::dealt;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use crate::ranks::{dealt, told_first};
 use serde_bytes::ByteBuf;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,14 +15,25 @@ use std::sync::Arc;
 type PackedSums = ByteBuf;
 
 impl<T: Laned> Among<T> {
-    /// What the particles of each body on all ranks add up to.
-    pub fn totals<const D: usize>(&self, bodies: &[Body<T, D>]) -> Arc<[Totals]> {
-        let own = here(bodies).map(|(body, it)| (body, packed(it.total_sums().all())));
-        self.rounded(bodies.len(), own, &|parts| {
-            let mut totals = TotalSums::default();
-            parts.iter().for_each(|part| unpack(part, totals.all()));
-            totals.rounded()
-        })
+    /// What the particles of each body on all ranks add up to, by body: the first knows it of all, the others of those
+    /// of which they have particles.
+    pub fn totals<const D: usize>(&self, bodies: &[Body<T, D>]) -> Arc<ByBody<Totals>> {
+        let found = self.rounded(
+            bodies,
+            |_, it| packed(it.total_sums().all()),
+            |parts| {
+                let mut totals = TotalSums::default();
+                parts.iter().for_each(|part| unpack(part, totals.all()));
+                totals.rounded()
+            },
+        );
+        let replies = found.iter().flat_map(|(known, ranks)| {
+            ranks.iter().filter(|rank| **rank > 0).map(move |&rank| (rank, *known))
+        });
+        let here = dealt(&*self.ranks, replies);
+        let known: Vec<(usize, Totals)> = found.into_iter().map(|(known, _)| known).collect();
+        let all = told_first(&*self.ranks, &known);
+        by_body(if self.ranks.rank() == 0 { all.concat() } else { here }).into()
     }
 
     /// The same of a body.
@@ -33,42 +43,49 @@ impl<T: Laned> Among<T> {
         sums.rounded()
     }
 
-    /// The angular velocities of bodies with these totals [rad/s].
-    pub fn spins<const D: usize>(&self, bodies: &[Body<T, D>], totals: &[Totals]) -> Arc<[[f64; 3]]> {
-        let turning = |body: usize, it: &Body<T, D>| it.turning_sums(&totals[body], it.gyration());
-        let own = here(bodies).map(|(body, it)| (body, packed(turning(body, it).all())));
-        self.rounded(bodies.len(), own, &|parts| {
+    /// The angular velocities of bodies with these totals [rad/s], by body: the first knows all, the others none.
+    pub fn spins<const D: usize>(
+        &self,
+        bodies: &[Body<T, D>],
+        totals: &ByBody<Totals>,
+    ) -> Vec<(usize, [f64; 3])> {
+        let turning = |body: usize, it: &Body<T, D>| {
+            let totals = of_body(totals, body).expect("it has particles here");
+            packed(it.turning_sums(totals, it.gyration()).all())
+        };
+        let found = self.rounded(bodies, turning, |parts| {
             let mut sums = TurningSums::default();
             parts.iter().for_each(|part| unpack(part, sums.all()));
             sums.spin::<D>()
-        })
+        });
+        let known: Vec<(usize, [f64; 3])> = found.into_iter().map(|(known, _)| known).collect();
+        by_body(told_first(&*self.ranks, &known).concat())
     }
 
-    /// What the sums of each of so many bodies come to, of which each rank has its own part; nothing of those of which
-    /// no rank has any.
-    fn rounded<X: Clone + Default + Serialize + DeserializeOwned>(
+    /// What the sums of bodies come to that began on this rank, and which ranks have a part of each.
+    fn rounded<X, const D: usize>(
         &self,
-        bodies: usize,
-        own: impl Iterator<Item = (usize, PackedSums)>,
-        round: &dyn Fn(&[PackedSums]) -> X,
-    ) -> Arc<[X]> {
-        let of_home = own.map(|(body, sums)| (self.homes[body].rank as usize, (body, sums)));
-        let mut here: BTreeMap<usize, Vec<PackedSums>> = BTreeMap::new();
-        for (body, sums) in dealt(&*self.ranks, of_home) {
-            here.entry(body).or_default().push(sums);
+        bodies: &[Body<T, D>],
+        sums_of: impl Fn(usize, &Body<T, D>) -> PackedSums,
+        round: impl Fn(&[PackedSums]) -> X,
+    ) -> Vec<((usize, X), Vec<usize>)> {
+        let here = bodies.iter().enumerate().filter(|(_, body)| !body.particles.is_empty());
+        let of_home = here
+            .map(|(body, it)| (self.homes[body].rank as usize, (body, self.ranks.rank(), sums_of(body, it))));
+        let mut parts: BTreeMap<usize, (Vec<usize>, Vec<PackedSums>)> = BTreeMap::new();
+        for (body, rank, sums) in dealt(&*self.ranks, of_home) {
+            let (ranks, parts) = parts.entry(body).or_default();
+            ranks.push(rank);
+            parts.push(sums);
         }
-        let found: Vec<(usize, X)> = here.iter().map(|(body, parts)| (*body, round(parts))).collect();
-        let mut all = vec![X::default(); bodies];
-        for (body, of_body) in self.gathered(&found).into_iter().flatten() {
-            all[body] = of_body;
-        }
-        all.into()
+        parts.into_iter().map(|(body, (ranks, parts))| ((body, round(&parts)), ranks)).collect()
     }
 }
 
-/// The bodies of which this rank has particles.
-fn here<T: Laned, const D: usize>(bodies: &[Body<T, D>]) -> impl Iterator<Item = (usize, &Body<T, D>)> {
-    bodies.iter().enumerate().filter(|(_, body)| !body.particles.is_empty())
+/// In the order of bodies.
+fn by_body<X>(mut all: Vec<(usize, X)>) -> Vec<(usize, X)> {
+    all.sort_unstable_by_key(|(body, _)| *body);
+    all
 }
 
 fn packed<'a>(sums: impl Iterator<Item = &'a mut ExactSum>) -> PackedSums {
