@@ -610,7 +610,7 @@ mod tests {
                 let wanted =
                     |node: &usize| local(*node).is_some_and(|local| is_within::<D>(local, cut, side));
                 let wanted: Vec<usize> = (0..side.pow(D as u32)).filter(wanted).collect();
-                let sent: Vec<usize> = nodes_at::<D>(corner, cut as u8, side).collect();
+                let sent: Vec<usize> = nodes_at::<D>(corner, cut, side).collect();
                 assert_eq!(sent, wanted, "corner {corner}, cut {cut}, side {side}");
             }
         }
