@@ -64,7 +64,7 @@ fn unfinished(folder: &Path, scene: &Scene) -> Result<(), Failure> {
 /// How a run is made, new or taken up.
 #[derive(Debug, Args)]
 pub(super) struct How {
-    /// Threads; as many as there are processors without this.
+    /// Threads; without this as many as there are processors, shared out where several processes share them.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
