@@ -142,7 +142,7 @@ const NODES: [(&str, &str); 2] = [
 ];
 
 /// A 3D plate and plane stress, with the same cells and rule: arrivals within a tolerance of each other. Measured on 64
-/// cells: within 0.3 % by the default rule; by the paper's 0.8, 2.0, 1.3 and 0.4 % later in the plate from disk to disk.
+/// cells: within 0.3 % by the default rule; by the paper's 0.8, 2.0, 1.3 and 0.4 % later in the plate, disk by disk.
 /// Plane stress is the limit of thin plates. In a plate of half-thickness b the front disperses, omega = c k
 /// (1 - (nu/(1 - nu))^2 (k b)^2/6), which smears it over (x (nu/(1 - nu))^2 b^2/2)^(1/3): at the second disk 0.06 D for
 /// the experiment's thickness D/8, and cells of D/64 show it. Hence the plate is D/16 thick there;

@@ -601,12 +601,9 @@ impl<const D: usize> ActiveBlocks<D> {
 
     /// Blocks of this rank's tiles that other ranks hold, too, sorted; once for each of these.
     pub fn blocks_sent(&self) -> Vec<SentBlock<D>> {
-        let outgoing = self
-            .border
-            .iter()
-            .flat_map(|border| border.outgoing.iter().enumerate().map(move |to| (border, to)));
         let mut blocks: Vec<SentBlock<D>> = Vec::new();
-        for (border, (to, traffic)) in outgoing {
+        let Some(border) = &self.border else { return blocks };
+        for (to, traffic) in border.outgoing.iter().enumerate() {
             for window in &traffic.windows {
                 let home = self.tiles[border.kept[window.place as usize] as usize].block;
                 let corners = (0..1 << D).filter(|corner| window.corners >> corner & 1 == 1);

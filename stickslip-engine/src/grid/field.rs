@@ -503,7 +503,7 @@ pub unsafe fn add_corner<T: Real, const D: usize>(
     side: usize,
 ) {
     const S: usize = SIDE as usize;
-    let along = |axis: usize| if corner >> (D - 1 - axis) & 1 == 0 { 0..S } else { S..side };
+    let along = |axis: usize| layers::<D>((usize::from(corner), 0), side, axis);
     let (rows, row) = (if D == 2 { 0..1 } else { along(1) }, along(D - 1));
     for x in along(0) {
         for y in rows.clone() {

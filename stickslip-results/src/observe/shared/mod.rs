@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::io;
-use std::path::{Path, PathBuf, absolute};
+use std::path::{self, Path, PathBuf};
 use stickslip_engine::shared::Program;
 
 /// What the programs of ranks can do with files of results.
@@ -91,9 +91,14 @@ fn ask<X: for<'de> Deserialize<'de>>(view: &dyn View, request: &Request) -> io::
     done.map_err(io::Error::from)
 }
 
+/// A path that is the same wherever processes stand, as far as it can be told.
+fn absolute(path: &Path) -> PathBuf {
+    path::absolute(path).unwrap_or_else(|_| path.to_path_buf())
+}
+
 /// Has ranks write a file of their particles, the same as one would write: what went into it.
 pub(super) fn write_particles(view: &dyn View, request: ParticlesRequest) -> io::Result<FileSum> {
-    let path = absolute(&request.path).unwrap_or(request.path);
+    let path = absolute(&request.path);
     ask(view, &Request::Particles(ParticlesRequest { path, ..request }))
 }
 
@@ -121,7 +126,7 @@ fn put_particles(view: &dyn View, ranks: &dyn Ranks, request: &ParticlesRequest)
 
 /// Has ranks write a file of the nodes of the last step, the same as one would write: what went into it.
 pub(super) fn write_grid(view: &dyn View, request: GridRequest) -> io::Result<FileSum> {
-    let path = absolute(&request.path).unwrap_or(request.path);
+    let path = absolute(&request.path);
     ask(view, &Request::Grid(GridRequest { path, ..request }))
 }
 
@@ -220,7 +225,7 @@ pub(super) fn write_sections(
     view: &dyn View,
     (path, form): (&Path, CheckpointForm),
 ) -> io::Result<Vec<Section>> {
-    let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    let path = absolute(path);
     ask(view, &Request::Sections(path, form == CheckpointForm::Compressed))
 }
 
@@ -281,7 +286,7 @@ pub struct SnapshotPlace {
 
 impl ParticlesThere {
     pub(super) fn in_sections(path: &Path, sections: &[Section]) -> Self {
-        let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        let path = absolute(path);
         ParticlesThere::Checkpoint(CheckpointPlace { path, sections: sections.to_vec() })
     }
 
@@ -306,7 +311,7 @@ impl ParticlesThere {
             })
         });
         let places = places.collect();
-        let path = absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        let path = absolute(path);
         Ok((ParticlesThere::Snapshot(SnapshotPlace { path, pieces, places }), found))
     }
 }
