@@ -65,6 +65,8 @@ pub enum Form {
     Number(Quantity),
     /// A list of pairs, at most so many.
     Pairs([Quantity; 2], usize),
+    /// One of these words, each with one sentence for the schema; its value is its place among them.
+    Word(&'static [(&'static str, &'static str)]),
 }
 
 /// What a number must be.
@@ -169,6 +171,11 @@ impl std::fmt::Display for AllowedRange {
     }
 }
 
+/// `"this" or "that"`
+fn listed(words: &[(&str, &str)]) -> String {
+    words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(" or ")
+}
+
 /// What holds where a constant is not given.
 #[derive(Clone, Copy, Debug)]
 pub enum Absent {
@@ -208,6 +215,7 @@ impl Constant {
         match &self.form {
             Form::Number(one) => std::slice::from_ref(one),
             Form::Pairs(two, _) => two,
+            Form::Word(_) => &[],
         }
     }
 
@@ -219,6 +227,7 @@ impl Constant {
         let wanted = match self.form {
             Form::Number(quantity) => quantity.bounds.to_string(),
             Form::Pairs([a, b], _) => format!("a list of pairs [{}, {}]", a.name, b.name),
+            Form::Word(words) => listed(words),
         };
         BadConstants::together(
             format!("no {}", self.name),
@@ -233,11 +242,19 @@ impl Constant {
         {
             return Err(self.bad(format!("{} pairs", values.len() / 2), format!("1 to {most} pairs")));
         }
+        if let Form::Word(words) = self.form
+            && let Some(value) =
+                values.iter().find(|value| !(0..words.len()).any(|place| **value == place as f64))
+        {
+            return Err(
+                self.bad(value.to_string(), format!("0 to {}, for {}", words.len() - 1, listed(words)))
+            );
+        }
         for (&value, quantity) in values.iter().zip(self.quantities().iter().cycle()) {
             if !quantity.bounds.contains(value) {
                 let found = format!("{value} {}", quantity.unit.symbol).trim_end().to_string();
                 return Err(match self.form {
-                    Form::Number(_) => self.bad(found, quantity.bounds.to_string()),
+                    Form::Number(_) | Form::Word(_) => self.bad(found, quantity.bounds.to_string()),
                     Form::Pairs(..) => self.bad(
                         format!("{} {found}", quantity.name),
                         format!("{} {}", quantity.name, quantity.bounds),

@@ -188,6 +188,9 @@ mod tests {
             law("damage", &[("tensile_strength", 3.0), ("fracture_energy", 1e3), ("strength_ratio", 10.0)])
                 .on_grid(0.1)
                 .expect("cells are small"),
+            law("damage", &[("tensile_strength", 3.0), ("fracture_energy", 1e3)])
+                .on_grid(0.1)
+                .expect("cells are small"),
         ]
     }
 
@@ -213,14 +216,14 @@ mod tests {
         }
         assert_eq!(
             laws().iter().map(Material::carries_stress).collect::<Vec<_>>(),
-            [false, true, true, false, false]
+            [false, true, true, false, false, false]
         );
     }
 
     #[test]
     fn what_cannot_be_is_refused() {
         let far = Symmetric([0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
-        let [.., flows, _, breaks] = &laws()[..] else { panic!("five laws") };
+        let [.., flows, _, breaks, _] = &laws()[..] else { panic!("six laws") };
         assert_eq!(flows.stretch_under(&far), Err(NoStretch::Yields));
         assert!(breaks.stretch_under(&Symmetric([4.0, 0.0, 0.0, 0.0, 0.0, 0.0])).is_err());
         let water = |name: &str| {

@@ -48,8 +48,9 @@ struct TrialStretch<T> {
 ///
 /// `motion` has the thickness of the start of the step, which its increment leaves alone. The first trial is Hooke's,
 /// `a = 1 - (1 - 2G/M) tr(dF - I)`, the next are Newton's with M and the secant's; once two trials enclose the answer,
-/// none leaves the bracket and every third one halves it, so the search ends for every law whose sigma_zz grows from
-/// compression to tension as the thickness does. What is left of sigma_zz is round-off of M; it stays in the stress, so
+/// none leaves the bracket and every third one halves it. Until then trials go thicker against compression and thinner
+/// against tension, whatever the secant says. So the search ends for every law whose sigma_zz leads from compression to
+/// tension as the thickness grows, also where what breaks makes it fall in between. What is left of sigma_zz is round-off of M; it stays in the stress, so
 /// that the next step of a law in rate form makes up for it.
 ///
 /// A lane that has its answer keeps it while others search on, so that it does not depend on them.
@@ -142,10 +143,11 @@ impl<T: Number> Bracket<T> {
         let (low, high) = (self.thin.min(self.thick), self.thin.max(self.thick));
         let outside = low.at_least(next) | next.at_least(high);
         let halved = self.ends() & if count.is_multiple_of(3) { u32::MAX } else { outside };
-        // A flat secant: thicker against compression, thinner against tension.
-        let flat = next.at_least(now.stretch) & now.stretch.at_least(next);
-        let away = T::select(now.stress.at_least(T::ZERO), T::HALF, T::of(2.0));
-        let free = T::select(flat, now.stretch * away, next);
+        // A secant that is flat or falls: thicker against compression, thinner against tension.
+        let tension = now.stress.at_least(T::ZERO);
+        let astray = (tension & next.at_least(now.stretch)) | (!tension & now.stretch.at_least(next));
+        let away = T::select(tension, T::HALF, T::of(2.0));
+        let free = T::select(astray, now.stretch * away, next);
         T::select(halved, (self.thin + self.thick) * T::HALF, free)
     }
 }

@@ -163,6 +163,18 @@ fn values_out_of_range() {
                 "10:58: materials.rubber.damage.fracture_energy: found \"-1 J/m^2\" (-1 J/m^2); allowed: a positive number",
             ),
             (
+                "neo_hookean = { ",
+                "damage = { tensile_strength = 1, fracture_energy = 1, criterion = \"rankin\", ",
+                "10:67: materials.rubber.damage.criterion: found \"rankin\"; allowed: \"rankine\" or \
+                 \"modified-von-mises\"; did you mean `rankine`?",
+            ),
+            (
+                "neo_hookean = { ",
+                "damage = { tensile_strength = 1, fracture_energy = 1, criterion = \"rankine\", strength_ratio = 9, ",
+                "10:95: materials.rubber.damage.strength_ratio: found 9; allowed: no strength_ratio with criterion = \
+                 \"rankine\", by which nothing is crushed; \"modified-von-mises\" has one",
+            ),
+            (
                 "neo_hookean = ",
                 "#",
                 "8:12: materials.rubber: found no law; allowed: a law (LAWS), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",

@@ -9,6 +9,7 @@ use crate::outside::OUTSIDE;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
+use crate::scene::suggestion::{did_you_mean, listed};
 use crate::scene::units::Powers;
 use crate::scene::{Dimension, NamedMaterial, Problem, VolumeChange};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -107,6 +108,7 @@ fn constants(
         let values = match constant.form {
             Form::Number(wanted) => vec![number(child, &wanted, context)?],
             Form::Pairs(wanted, _) => pairs(child, (constant, &wanted), context)?,
+            Form::Word(words) => vec![word(child, words, context)?],
         };
         given.put(child.name.clone(), values);
     }
@@ -140,6 +142,19 @@ fn pairs(
     Ok(values)
 }
 
+/// The place of a word among those that may stand here.
+fn word(node: &DocumentNode, words: &[(&str, &str)], context: &Context) -> Result<f64, Fault> {
+    let names = || words.iter().map(|(name, _)| *name);
+    let quoted: Vec<String> = names().map(|name| format!("{name:?}")).collect();
+    let allowed = listed(quoted.iter().map(String::as_str));
+    let Value::Text(_) = node.value else { return Err(node.fault(allowed)) };
+    let text = Text::read(node)?;
+    let given = text.value(context)?;
+    let place = names().position(|name| name == given);
+    let place = place.ok_or_else(|| text.refused(&given, allowed).help(did_you_mean(&given, names())))?;
+    Ok(place as f64)
+}
+
 /// What the schema says of a constant.
 fn schema_of(constant: &Constant) -> Schema {
     let mut schema = match &constant.form {
@@ -156,6 +171,14 @@ fn schema_of(constant: &Constant) -> Schema {
                 "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": ["number", "string"] } },
                 "examples": [[example]],
             })
+        }
+        Form::Word(words) => {
+            let words =
+                words.iter().map(|(name, about)| json_schema!({ "const": name, "description": about }));
+            let parameter =
+                json_schema!({ "type": "string", "pattern": "\\{", "description": "A parameter in braces." });
+            let all: Vec<Schema> = words.chain([parameter]).collect();
+            json_schema!({ "anyOf": all })
         }
     };
     schema.insert("description".into(), constant.summary.into());
