@@ -408,7 +408,7 @@ pub struct JointState {
     pub impulse: [f64; 3],
     /// Impulse of moments about the joint's point, of sliders and welds about the body's centre [N m s].
     pub moment: [f64; 3],
-    /// Angle of a hinge [rad], way of a slider, change of a spring's length since the start [m].
+    /// Angle of a hinge or a planar joint [rad], way of a slider, change of a spring's length since the start [m].
     pub way: f64,
     /// Its rate [rad/s, m/s].
     pub speed: f64,

@@ -21,7 +21,7 @@ pub struct JointRow {
     pub force: [f64; 3],
     /// Mean moment on it about the joint's point, of sliders and welds about its centre [N m].
     pub moment: [f64; 3],
-    /// Angle of a hinge [rad], way of a slider, change of a spring's length since the start [m].
+    /// Angle of a hinge or a planar joint [rad], way of a slider, change of a spring's length since the start [m].
     pub way: f64,
     /// Its rate now [rad/s, m/s].
     pub rate: f64,

@@ -39,7 +39,7 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
         if through {
             let found = format!("`{}`, through which a symmetry face of the domain goes", body.name);
             let allowed = "a body beside the mirror, or one that a slider to the ground, whose axis lies along the \
-                           mirror, or a weld holds on it";
+                           mirror, a planar joint, whose normal lies across it, or a weld holds on it";
             return Err(problem(found, allowed));
         }
     }
@@ -61,7 +61,7 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
         let (key, points) = match &joint.kind {
             JointKind::Hinge { point, .. } | JointKind::Ball { point } => ("point", [*point; 2]),
             JointKind::Spring { points, .. } => ("from", *points),
-            JointKind::Slider { .. } | JointKind::Weld => {
+            JointKind::Slider { .. } | JointKind::Planar { .. } | JointKind::Weld => {
                 apart(i, joint, extents)?;
                 continue;
             }
@@ -88,7 +88,7 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
 }
 
 /// # Errors
-/// A slider or a weld between bodies far from each other.
+/// A slider, a planar joint or a weld between bodies far from each other.
 fn apart(i: usize, joint: &Joint, extents: &[FillingExtent]) -> Result<(), Problem> {
     let Some(to) = joint.to else { return Ok(()) };
     let [a, b] = [joint.body, to].map(|body| &extents[body].bounds);

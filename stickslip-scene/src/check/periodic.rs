@@ -79,7 +79,12 @@ fn joined(scene: &Scene, body: usize, k: usize) -> Result<(), Problem> {
         }
         BodyMotion::FreeRigid(_)
             if !scene.joints.iter().any(|joint| {
-                joint.body == body && matches!(joint.kind, JointKind::Slider { .. } | JointKind::Weld)
+                joint.body == body
+                    && match &joint.kind {
+                        JointKind::Slider { .. } | JointKind::Weld => true,
+                        JointKind::Planar { axis, .. } => axis[k].abs() >= 1.0 - 1e-12,
+                        _ => false,
+                    }
             }) =>
         {
             Err(problem("", Some("hold it by a slider in [[joints]]".to_string())))

@@ -38,7 +38,9 @@ pub fn longest_step(scene: &Scene) -> f64 {
     }
     for joint in &scene.joints {
         let (axis, stiffness, dashpot) = match &joint.kind {
-            JointKind::Hinge { axis, motor, .. } => (Some(axis), motor.stiffness, motor.dashpot),
+            JointKind::Hinge { axis, motor, .. } | JointKind::Planar { axis, motor } => {
+                (Some(axis), motor.stiffness, motor.dashpot)
+            }
             JointKind::Slider { motor, .. } => (None, motor.stiffness, motor.dashpot),
             JointKind::Spring { stiffness, dashpot, .. } => (None, *stiffness, *dashpot),
             JointKind::Ball { .. } | JointKind::Weld => continue,

@@ -38,6 +38,13 @@ pub enum JointKind {
         /// What drives it.
         motor: Motor,
     },
+    /// Moving in a plane and turning about its normal.
+    Planar {
+        /// Unit vector along the normal; in the plane the third, and it leaves all motion [-].
+        axis: [f64; 3],
+        /// What drives the turning.
+        motor: Motor,
+    },
     /// Turning about a point in every way.
     Ball {
         /// The point [m].
@@ -58,7 +65,8 @@ pub enum JointKind {
     },
 }
 
-/// What drives the motion that a hinge or a slider leaves: moments of a hinge [N m], forces of a slider [N].
+/// What drives the motion that a hinge or a slider leaves, or the turning of a planar joint: moments [N m], forces of a
+/// slider [N].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motor {
     /// Moment or force at time t.
@@ -95,11 +103,12 @@ impl Joint {
 }
 
 impl Scene {
-    /// Whether a joint to the ground lets a free rigid body neither turn nor move along an axis: it stays on a mirror
-    /// across that axis.
+    /// Whether a joint to the ground lets a free rigid body neither move along an axis nor turn but about it: it stays
+    /// on a mirror across that axis.
     pub fn slides_along(&self, body: usize, mirror: usize) -> bool {
         let stays = |joint: &Joint| match &joint.kind {
             JointKind::Slider { axis, .. } => axis[mirror].abs() <= 1e-12,
+            JointKind::Planar { axis, .. } => axis[mirror].abs() >= 1.0 - 1e-12,
             JointKind::Weld => true,
             JointKind::Hinge { .. } | JointKind::Ball { .. } | JointKind::Spring { .. } => false,
         };
@@ -113,6 +122,7 @@ impl JointKind {
         match self {
             JointKind::Hinge { .. } => "hinge",
             JointKind::Slider { .. } => "slider",
+            JointKind::Planar { .. } => "planar",
             JointKind::Ball { .. } => "ball",
             JointKind::Weld => "weld",
             JointKind::Spring { .. } => "spring",

@@ -130,13 +130,26 @@ fn joints() {
             (
                 "slider = {",
                 "weld = {}\nslider = {",
-                "28:1: joints[1]: found a joint of several kinds; allowed: one of hinge, slider, ball, weld and \
+                "28:1: joints[1]: found a joint of several kinds; allowed: one of hinge, slider, planar, ball, weld and \
                  spring",
             ),
             (
                 "slider = { axis = [1, 0], force = \"1 kN\" }",
                 "",
-                "28:1: joints[1]: found a joint of no kind; allowed: one of hinge, slider, ball, weld and spring",
+                "28:1: joints[1]: found a joint of no kind; allowed: one of hinge, slider, planar, ball, weld and \
+                 spring",
+            ),
+            (
+                "slider = { axis = [1, 0], force = \"1 kN\" }",
+                "planar = {}",
+                "28:1: joints[1].planar: found a joint that does nothing; allowed: a `torque`, `speed`, `stiffness` or \
+                 `dashpot`: in the plane a body moves so without a joint",
+            ),
+            (
+                "slider = { axis = [1, 0], force = \"1 kN\" }",
+                "planar = { normal = [0, 0, 1], torque = 1 }",
+                "30:21: joints[1].planar.normal: found [0, 0, 1]; allowed: no normal, as the scene is plane: it moves in \
+                 x and y and turns about z",
             ),
             (
                 "axis = [1, 0]",
@@ -147,7 +160,7 @@ fn joints() {
                 "slider = {",
                 "rail = {",
                 "30:1: joints[1].rail: found unknown key `rail`; allowed: name, repeat, body, to, hinge, slider, \
-                 ball, weld, spring",
+                 planar, ball, weld, spring",
             ),
             (
                 ", stiffness = \"1 kN/m\"",

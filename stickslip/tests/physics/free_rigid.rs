@@ -3,7 +3,7 @@
 //! Source: rigid-body mechanics. Period of a physical pendulum of amplitude a: T = 4 sqrt(I / (m g s)) K(sin(a/2)), with
 //! the complete elliptic integral K by the arithmetic-geometric mean.
 //!
-//! Set-up: rods, disks and balls that are rigid and free; hinges, sliders, balls, welds and springs between them and the
+//! Set-up: rods, disks and balls that are rigid and free; hinges, sliders, planar joints, balls, welds and springs between them and the
 //! ground; contact with blocks of rubber and with stiff floors, in the plane and in space.
 //!
 //! Expected: the period within 1e-4; joints that hold to 1e-9 of the size and do not drift; momentum and angular
@@ -665,6 +665,83 @@ fn motors_and_prescribed_motion_follow_tables() {
     let plate = simulation.bodies()[2].clone();
     assert!((plate.position[1] - 8.5 - 1.5).abs() < 2e-3, "{:?}", plate.position);
     assert!((plate.spin[2] - 3.0).abs() < 1e-4, "{:?}", plate.spin);
+}
+
+/// A planar joint in space leaves a body in its plane: on a plane that is tilted by the angle a a block slides with
+/// g sin(a) down it, whatever else pushes it, and turns about the normal as a moment there wants. What holds it bears
+/// m g cos(a).
+#[test]
+fn a_planar_joint_leaves_a_plane_and_the_turning_in_it() {
+    let angle: f64 = 0.4;
+    let (sine, cosine) = angle.sin_cos();
+    let scene = format!(
+        r#"
+        gravity = [0, 0, -10]
+        space = {{ dimension = "3d", cell = 0.1 }}
+        time = {{ end = 1, max_step = 1e-3 }}
+        {STEEL}
+        [[bodies]]
+        name = "puck"
+        material = "steel"
+        shape.cylinder = {{ start = [0, 0, -0.1], end = [0, 0, 0.1], radius = 0.3 }}
+        velocity = [0, 0.5, 0]
+        rigid.free = {{ mass = 2, inertia = [0.1, 0.1, 0.2] }}
+        [[joints]]
+        name = "ice"
+        body = "puck"
+        planar = {{ normal = [{sine}, 0, {cosine}], torque = "0.3 N m" }}
+        "#
+    );
+    let mut simulation = start(&scene);
+    let normal = [sine, 0.0, cosine];
+    let along = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
+    let mut loosest = 0.0_f64;
+    run_to(&mut *simulation, 1.0, |s| loosest = loosest.max(along(s.bodies()[0].position, normal).abs()));
+    let (puck, joint) = (simulation.bodies()[0].clone(), simulation.joints()[0]);
+    let down = along(puck.position, [cosine, 0.0, -sine]);
+    println!("out of the plane by {loosest:.1e} m, down it {down:.6} m, turned {:.6} rad", joint.way);
+    assert!(loosest < 1e-9, "{loosest}");
+    // From rest along the slope, and at 0.5 m/s across it.
+    // Within the first order of the step: 1e-3 of a second.
+    assert!((down / (0.5 * 10.0 * sine) - 1.0).abs() < 2e-3, "{down}");
+    assert!((puck.position[1] - 0.5).abs() < 1e-9, "{:?}", puck.position);
+    // The moment of inertia about the normal, which the body's axes are not.
+    let inertia = 0.1 * sine * sine + 0.2 * cosine * cosine;
+    assert!((joint.speed / (0.3 / inertia) - 1.0).abs() < 0.02, "{joint:?}");
+    assert!((along(joint.impulse, normal) / (2.0 * 10.0 * cosine) - 1.0).abs() < 1e-3, "{joint:?}");
+}
+
+/// In the plane it drives a wheel that is free along x and y, and takes the moment itself: while a motor turns it the
+/// wheel falls as a stone and flies on, and its moment is I dw/dt.
+#[test]
+fn a_planar_joint_in_the_plane_turns_a_wheel_that_is_free() {
+    let scene = format!(
+        r#"
+        gravity = [0, -10]
+        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        time = {{ end = 1, max_step = 1e-3 }}
+        {STEEL}
+        [[bodies]]
+        name = "wheel"
+        material = "steel"
+        shape.ball = {{ center = [0, 0], radius = 0.5 }}
+        velocity = [3, 0]
+        rigid.free = {{ mass = 8, inertia = 1 }}
+        [[joints]]
+        name = "axle"
+        body = "wheel"
+        planar = {{ speed = "4 rad/s^2 * t" }}
+        "#
+    );
+    let mut simulation = start(&scene);
+    run_to(&mut *simulation, 1.0, |_| {});
+    let (wheel, joint) = (simulation.bodies()[0].clone(), simulation.joints()[0]);
+    println!("wheel at {:?}, spin {}, moment {}", wheel.position, wheel.spin[2], joint.moment[2]);
+    assert!((wheel.position[0] - 3.0).abs() < 1e-9, "{:?}", wheel.position);
+    assert!((wheel.position[1] + 5.0).abs() < 0.01, "{:?}", wheel.position);
+    assert!((wheel.spin[2] - 4.0).abs() < 0.01, "{:?}", wheel.spin);
+    assert!((joint.way - 2.0).abs() < 0.01 && (joint.moment[2] - 4.0).abs() < 0.01, "{joint:?}");
+    assert!(joint.impulse.iter().all(|j| j.abs() < 1e-9), "{joint:?}");
 }
 
 /// The scene in the book: two wheels on axles carry a carriage up a slope, one of them driven by a motor.

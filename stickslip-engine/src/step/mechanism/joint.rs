@@ -17,7 +17,7 @@ pub struct JointSums {
     pub impulse: [f64; 3],
     /// Impulse of moments about the joint's point [N m s].
     pub moment: [f64; 3],
-    /// Angle of a hinge [rad], way of a slider, change of a spring's length [m].
+    /// Angle of a hinge or a planar joint [rad], way of a slider, change of a spring's length [m].
     pub way: f64,
     /// Its rate.
     pub speed: f64,
@@ -74,7 +74,7 @@ pub fn poses(joint: &Joint, of: impl Fn(usize) -> Pose) -> [Option<Pose>; 2] {
 fn points(joint: &Joint, center: [f64; 3]) -> [[f64; 3]; 2] {
     match &joint.kind {
         JointKind::Hinge { point, .. } | JointKind::Ball { point } => [*point; 2],
-        JointKind::Slider { .. } | JointKind::Weld => [center; 2],
+        JointKind::Slider { .. } | JointKind::Planar { .. } | JointKind::Weld => [center; 2],
         JointKind::Spring { points, .. } => *points,
     }
 }
@@ -84,7 +84,7 @@ fn way(joint: &Joint, poses: &[Option<Pose>; 2], center: [f64; 3]) -> f64 {
     let [a, b] = [poses[0].as_ref(), poses[1].as_ref()];
     let [p, q] = points(joint, center);
     match &joint.kind {
-        JointKind::Hinge { axis, .. } => {
+        JointKind::Hinge { axis, .. } | JointKind::Planar { axis, .. } => {
             let [e, f] = across(*axis);
             let (e_a, e_b, f_b) = (turned(a, e), turned(b, e), turned(b, f));
             libm::atan2(dot(e_a, f_b), dot(e_a, e_b))
@@ -109,7 +109,7 @@ impl JointSums {
         let pose = |body: usize| bodies[body].motion.as_deref().expect("joints hold rigid bodies").pose();
         let found = way(joint, &poses(joint, pose), pose(joint.body).begun());
         let mut change = found - self.way;
-        if matches!(joint.kind, JointKind::Hinge { .. }) {
+        if matches!(joint.kind, JointKind::Hinge { .. } | JointKind::Planar { .. }) {
             change -= TAU * ((change + PI) / TAU).floor();
         }
         self.way += change;
@@ -127,7 +127,9 @@ impl Link {
         let place = now(a.as_ref(), p);
         let (other, to) = (now(b.as_ref(), q), joint.to.map_or([0.0; 3], |to| motion(to).center));
         let axis = match &joint.kind {
-            JointKind::Hinge { axis, .. } | JointKind::Slider { axis, .. } => turned(b.as_ref(), *axis),
+            JointKind::Hinge { axis, .. }
+            | JointKind::Slider { axis, .. }
+            | JointKind::Planar { axis, .. } => turned(b.as_ref(), *axis),
             JointKind::Spring { .. } => {
                 Vector(minus(place, other)).direction().map_or([0.0; 3], |direction| direction.0)
             }
@@ -164,7 +166,7 @@ impl Link {
             motor.push.at(time + 0.5 * dt) - motor.stiffness * way - motor.dashpot * speed
         };
         let given = match &joint.kind {
-            JointKind::Hinge { motor, .. } => {
+            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => {
                 let moment = scaled(self.axis, dt * driven(motor, turning()));
                 [join([0.0; 3], moment), join([0.0; 3], scaled(moment, -1.0))]
             }
@@ -203,7 +205,7 @@ impl Link {
             hold(self.directions(direction), f64::INFINITY);
         }
         match &joint.kind {
-            JointKind::Hinge { motor, .. } if motor.speed.is_some() => {
+            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } if motor.speed.is_some() => {
                 hold(self.directions(Direction::Turn(self.axis)), motor.limit * dt);
             }
             JointKind::Slider { motor, .. } if motor.speed.is_some() => {
@@ -230,6 +232,10 @@ impl Link {
         match &joint.kind {
             JointKind::Hinge { .. } if dimension == 2 => ways().collect(),
             JointKind::Hinge { .. } => ways().chain([e, f].map(Direction::Turn)).collect(),
+            JointKind::Planar { .. } if dimension == 2 => Vec::new(),
+            JointKind::Planar { .. } => {
+                [Direction::Way(self.axis), Direction::Turn(e), Direction::Turn(f)].to_vec()
+            }
             JointKind::Ball { .. } => ways().collect(),
             JointKind::Weld => ways().chain(turns()).collect(),
             JointKind::Slider { .. } => {
@@ -252,7 +258,9 @@ impl Link {
         let parted = minus(now(a, p), now(b, q));
         let twisted = match &joint.kind {
             // The part of the turn across the axis.
-            JointKind::Hinge { axis, .. } => cross(turned(b, *axis), turned(a, *axis)),
+            JointKind::Hinge { axis, .. } | JointKind::Planar { axis, .. } => {
+                cross(turned(b, *axis), turned(a, *axis))
+            }
             _ => {
                 let turn = |pose: Option<&Pose>| pose.map_or(Matrix::IDENTITY, |pose| pose.orientation);
                 let between = turn(a) * turn(b).transpose();
@@ -261,12 +269,13 @@ impl Link {
             }
         };
         let axis_now = match &joint.kind {
-            JointKind::Slider { axis, .. } => turned(b, *axis),
+            JointKind::Slider { axis, .. } | JointKind::Planar { axis, .. } => turned(b, *axis),
             _ => self.axis,
         };
-        // What slides may have gone any way along the axis as it is then.
+        // What slides may have gone any way along the axis as it is then, what is in a plane any way across it.
         let parted = match &joint.kind {
             JointKind::Slider { .. } => minus(parted, scaled(axis_now, dot(parted, axis_now))),
+            JointKind::Planar { .. } => scaled(axis_now, dot(parted, axis_now)),
             _ => parted,
         };
         let mut off: Vec<f64> = (self.held(joint, dimension).into_iter())
@@ -277,9 +286,11 @@ impl Link {
             .collect();
         let middle = time + 0.5 * dt;
         match &joint.kind {
-            JointKind::Hinge { motor, .. } => off.extend(motor.speed.as_ref().map(|speed| {
-                dot(minus(spin(&velocities[0]), spin(&velocities[1])), self.axis) - speed.at(middle)
-            })),
+            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => {
+                off.extend(motor.speed.as_ref().map(|speed| {
+                    dot(minus(spin(&velocities[0]), spin(&velocities[1])), self.axis) - speed.at(middle)
+                }))
+            }
             JointKind::Slider { motor, .. } => off.extend(motor.speed.as_ref().map(|speed| {
                 let [v, w] = [0, 1].map(|side| velocity_at(&velocities[side], self.arms[side]));
                 dot(minus(v, w), self.axis) - speed.at(middle)

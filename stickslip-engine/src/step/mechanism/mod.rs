@@ -225,7 +225,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The longest step in which no free rigid body, and no motor of a joint, turns by more than a part of a radian [s].
     pub(super) fn longest_turn(&self) -> f64 {
         let motors = self.settings.joints.iter().map(|joint| match &joint.kind {
-            JointKind::Hinge { motor: Motor { speed: Some(speed), .. }, .. } => {
+            JointKind::Hinge { motor: Motor { speed: Some(speed), .. }, .. }
+            | JointKind::Planar { motor: Motor { speed: Some(speed), .. }, .. } => {
                 speed.at(self.state.time).abs()
             }
             _ => 0.0,

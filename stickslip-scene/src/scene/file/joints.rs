@@ -16,8 +16,8 @@ use crate::scene::{self, Body, JointKind, Motor};
 use std::collections::HashSet;
 
 table! {
-    /// What joins a free rigid body to another rigid body or to the ground: one of hinge, slider, ball, weld and spring.
-    /// Places and axes are those of the start and move with the bodies.
+    /// What joins a free rigid body to another rigid body or to the ground: one of hinge, slider, planar, ball, weld and
+    /// spring. Places and axes are those of the start and move with the bodies.
     Joint {
         /// Its name in joints.csv; by default "joint 1", "joint 2" ...
         name: Option<Text>,
@@ -31,6 +31,8 @@ table! {
         hinge: Option<Hinge>,
         /// Leaves sliding along a direction: slider = { axis = [1, 0] }.
         slider: Option<Slider>,
+        /// Leaves moving in a plane and turning about its normal: planar = { normal = [0, 0, 1] }.
+        planar: Option<Planar>,
         /// Leaves turning about a point: ball = { point = [0, 0, 0] }.
         ball: Option<BallJoint>,
         /// Leaves nothing: weld = {}.
@@ -77,6 +79,25 @@ table! {
         stiffness: Option<QuantityInput<Stiffness>>,
         /// Force against the speed of sliding, over the speed [N s/m]. By default none.
         dashpot: Option<QuantityInput<ForceOverVelocity>>,
+    }
+}
+
+table! {
+    /// A joint that leaves a body in a plane, and what turns it. In the plane moments are per metre of depth.
+    Planar {
+        /// Across the plane, of any length; in three dimensions only: in the plane it is the third axis.
+        normal: Option<VectorInput<Ratio>>,
+        /// Moment on the body about the normal [N m]; a formula of the time t or a table varies it. By default none.
+        torque: Option<Varying<Moment>>,
+        /// Speed of turning that a motor keeps up [rad/s]; a formula of the time t or a table
+        /// varies it. By default any.
+        speed: Option<Varying<AngularVelocity>>,
+        /// Largest moment of that motor [N m]; by default as large as it takes.
+        limit: Option<QuantityInput<Moment>>,
+        /// Moment against the angle from the start, over the angle [N m]. By default none.
+        stiffness: Option<QuantityInput<Moment>>,
+        /// Moment against the speed of turning, over the speed [N m s]. By default none.
+        dashpot: Option<QuantityInput<MomentOverSpin>>,
     }
 }
 
@@ -134,7 +155,7 @@ pub fn resolve(joints: &[Joint], (bodies, context): (&[Body], &Context)) -> Resu
     Ok(resolved)
 }
 
-const KINDS: &str = "one of hinge, slider, ball, weld and spring";
+const KINDS: &str = "one of hinge, slider, planar, ball, weld and spring";
 
 impl Joint {
     fn resolve(
@@ -164,16 +185,19 @@ impl Joint {
                 Some(place)
             }
         };
-        let kind = match (&self.hinge, &self.slider, &self.ball, &self.weld, &self.spring) {
-            (Some(hinge), None, None, None, None) => hinge.resolve(declared, context)?,
-            (None, Some(slider), None, None, None) => slider.resolve(context)?,
-            (None, None, Some(ball), None, None) => JointKind::Ball { point: ball.point.value(context)? },
-            (None, None, None, Some(Weld {}), None) => JointKind::Weld,
-            (None, None, None, None, Some(spring)) => spring.resolve(declared, context)?,
-            (None, None, None, None, None) => {
-                return Err(Fault::new(declared, "a joint of no kind", KINDS));
-            }
-            _ => return Err(Fault::new(declared, "a joint of several kinds", KINDS)),
+        let mut kinds = Vec::new();
+        kinds.extend(self.hinge.as_ref().map(|hinge| hinge.resolve(declared, context)));
+        kinds.extend(self.slider.as_ref().map(|slider| slider.resolve(context)));
+        kinds.extend(self.planar.as_ref().map(|planar| planar.resolve(declared, context)));
+        kinds
+            .extend(self.ball.as_ref().map(|ball| Ok(JointKind::Ball { point: ball.point.value(context)? })));
+        kinds.extend(self.weld.as_ref().map(|Weld {}| Ok(JointKind::Weld)));
+        kinds.extend(self.spring.as_ref().map(|spring| spring.resolve(declared, context)));
+        let several = kinds.len() > 1;
+        let kind = match kinds.pop() {
+            Some(kind) if !several => kind?,
+            Some(_) => return Err(Fault::new(declared, "a joint of several kinds", KINDS)),
+            None => return Err(Fault::new(declared, "a joint of no kind", KINDS)),
         };
         Ok(scene::Joint { name, body, to, kind })
     }
@@ -192,23 +216,59 @@ fn or<M: Measure>(input: &Option<QuantityInput<M>>, none: f64, context: &Context
     input.as_ref().map_or(Ok(none), |input| positive(input, context))
 }
 
+/// The axis about which a joint turns: the third in the plane, where none is given, and one that must be in space.
+fn axis_of_turning(
+    given: Option<&VectorInput<Ratio>>,
+    (key, in_plane, in_space): (String, &str, &str),
+    context: &Context,
+) -> Result<[f64; 3], Fault> {
+    match (given, context.dimension.is_plane()) {
+        (None, true) => Ok([0.0, 0.0, 1.0]),
+        (Some(axis), false) => direction(axis, context),
+        (Some(axis), true) => Err(axis.node().fault(in_plane)),
+        (None, false) => Err(Fault::new(&key, "nothing, the key is missing", in_space)),
+    }
+}
+
+impl Planar {
+    fn resolve(&self, declared: &str, context: &Context) -> Result<JointKind, Fault> {
+        let axis = axis_of_turning(
+            self.normal.as_ref(),
+            (
+                format!("{declared}.planar.normal"),
+                "no normal, as the scene is plane: it moves in x and y and turns about z",
+                "the direction across the plane, like [0, 0, 1]",
+            ),
+            context,
+        )?;
+        let motor = Motor {
+            push: push(&self.torque, context)?,
+            speed: self.speed.as_ref().map(|speed| speed.resolve(context, Dependence::Time)).transpose()?,
+            limit: or(&self.limit, f64::INFINITY, context)?,
+            stiffness: or(&self.stiffness, 0.0, context)?,
+            dashpot: or(&self.dashpot, 0.0, context)?,
+        };
+        limit_has_speed(&self.limit, &motor)?;
+        if context.dimension.is_plane() && motor == Motor::default() {
+            let allowed =
+                "a `torque`, `speed`, `stiffness` or `dashpot`: in the plane a body moves so without a joint";
+            return Err(Fault::new(&format!("{declared}.planar"), "a joint that does nothing", allowed));
+        }
+        Ok(JointKind::Planar { axis, motor })
+    }
+}
+
 impl Hinge {
     fn resolve(&self, declared: &str, context: &Context) -> Result<JointKind, Fault> {
-        let axis = match (&self.axis, context.dimension.is_plane()) {
-            (None, true) => [0.0, 0.0, 1.0],
-            (Some(axis), false) => direction(axis, context)?,
-            (Some(axis), true) => {
-                return Err(axis.node().fault("no axis, as the scene is plane: a hinge turns about z"));
-            }
-            (None, false) => {
-                let allowed = "the direction about which it turns, like [0, 0, 1]";
-                return Err(Fault::new(
-                    &format!("{declared}.hinge.axis"),
-                    "nothing, the key is missing",
-                    allowed,
-                ));
-            }
-        };
+        let axis = axis_of_turning(
+            self.axis.as_ref(),
+            (
+                format!("{declared}.hinge.axis"),
+                "no axis, as the scene is plane: a hinge turns about z",
+                "the direction about which it turns, like [0, 0, 1]",
+            ),
+            context,
+        )?;
         let motor = Motor {
             push: push(&self.torque, context)?,
             speed: self.speed.as_ref().map(|speed| speed.resolve(context, Dependence::Time)).transpose()?,
