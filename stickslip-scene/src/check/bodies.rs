@@ -2,7 +2,7 @@
 
 use super::table::short;
 use crate::geometry::{self, Bounds, ParticleSite, Shape};
-use crate::scene::{Problem, Scene};
+use crate::scene::{Face, Problem, Scene};
 use rayon::prelude::*;
 
 /// Particles are numbered with 32 bits in their body, and take hundreds of bytes.
@@ -172,10 +172,13 @@ pub(super) fn check_domain(scene: &Scene, extents: &[FillingExtent]) -> Result<(
                             scene.bodies[i].name
                         ),
                         allowed: "bodies inside the domain".into(),
-                        help: Some(
-                            "make the domain larger, move the body, or cut it at the face with a half-space"
+                        help: Some(match domain.faces[k][usize::from(outward > 0.0)] {
+                            Face::Symmetry => "make the domain larger, move the body, or let the mirror cut it: \
+                                               beyond_mirrors = \"cut\""
                                 .into(),
-                        ),
+                            _ => "make the domain larger, move the body, or cut it at the face with a half-space"
+                                .to_string(),
+                        }),
                     });
                 }
             }

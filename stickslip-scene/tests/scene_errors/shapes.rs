@@ -1,6 +1,7 @@
 //! Shapes that are none.
 
 use crate::{MINIMAL, check, edited, message};
+use stickslip_scene::scene;
 
 /// Each mistake in a shape of a scene in space, with the message that it must give after the place and the shape's key.
 fn wrong(cases: &[(&str, &str)]) {
@@ -143,4 +144,40 @@ fn named_shapes_are_bounded() {
     let nearer = "18:1: shapes.s16: found a shape that names others 16 deep; allowed: shapes that are nearer to those \
                   they are made of";
     check(&deep, &[("", "", nearer)]);
+}
+
+/// A body that a mirror cuts is the one that a half-space cuts there; without a mirror, or without being asked, it is
+/// refused.
+#[test]
+fn mirrors_cut_shapes_on_request() {
+    let scene = |space: &str, keys: &str| {
+        format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.1, domain = {{ min = [0, -2], max = [3, 2], {space} }} }}
+            time.end = 1
+            materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            [[bodies]]
+            name = "disk"
+            material = "gel"
+            {keys}
+            "#
+        )
+    };
+    let parsed =
+        |text: &str| scene::parse("a.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    let ball = "shape.ball = { center = [0.3, 0], radius = 1 }";
+    let mirror = "x_min = \"symmetry\", y_max = \"symmetry\"";
+    let by_hand = "shape.intersection = [{ ball = { center = [0.3, 0], radius = 1 } }, { half_space = { point = [0, 0], \
+                   normal = [-1, 0] } }]";
+    let cut = parsed(&scene(mirror, &format!("beyond_mirrors = \"cut\"\n{ball}")));
+    let expected = parsed(&scene(mirror, by_hand)).bodies[0].shape.clone();
+    assert_eq!(cut.bodies[0].shape, expected, "the mirror above cuts nothing");
+    assert_eq!(stickslip_scene::check::problems(&cut), Ok(()));
+    let uncut = parsed(&scene(mirror, ball));
+    let refused = stickslip_scene::check::problems(&uncut).unwrap_err();
+    assert!(refused.found.contains("`disk` leaves the domain"), "{refused}");
+    assert!(refused.help.is_some_and(|help| help.contains("beyond_mirrors = \"cut\"")));
+    let nothing = message(&scene("x_min = \"fixed\"", &format!("beyond_mirrors = \"cut\"\n{ball}")));
+    let told = "bodies[0].beyond_mirrors: found \"cut\"; allowed: \"refused\", as no face of the domain is \"symmetry\"";
+    assert!(nothing.contains(told), "{nothing}");
 }

@@ -10,12 +10,12 @@ use super::repeat::Repeat;
 use super::shape::ShapeInput;
 use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VaryingSpin, VectorInput};
-use crate::geometry::Arrangement;
+use crate::geometry::{Arrangement, Bounds, Mirror, Shape};
 use crate::packing::Placement;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
-use crate::scene::{self, BodyMotion, Expression, FreeRigid, NamedMaterial};
+use crate::scene::{self, BodyMotion, Domain, Expression, Face, FreeRigid, NamedMaterial};
 use schemars::JsonSchema;
 use std::collections::HashSet;
 
@@ -34,6 +34,9 @@ table! {
         material: Text,
         /// Where it is at the start: shape.ball = { center = [0, 0, 1], radius = 1 }.
         shape: ShapeInput,
+        /// What becomes of the part of its shape that lies beyond a symmetry face of the domain.
+        #[schemars(extend("default" = "refused"))]
+        beyond_mirrors: Option<Word<BeyondMirrors>>,
         /// How its particles are laid out.
         #[schemars(extend("default" = Arrangement::default()))]
         particles: Option<Word<Arrangement>>,
@@ -142,6 +145,20 @@ impl InertiaInput {
     }
 }
 
+/// What becomes of a part of a shape that lies beyond a mirror.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BeyondMirrors {
+    Refused,
+    Cut,
+}
+
+impl Choice for BeyondMirrors {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("refused", BeyondMirrors::Refused, "It is a mistake."),
+        ("cut", BeyondMirrors::Cut, "The mirror cuts it off, and shows what is left as the whole."),
+    ];
+}
+
 impl Choice for Arrangement {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("lattice", Arrangement::Lattice, "On the lattice of space; curved surfaces become stairs."),
@@ -201,18 +218,43 @@ impl Bodies {
 }
 
 /// The bodies in the order of the file.
-pub fn resolve(bodies: &[Body], materials: &[NamedMaterial], context: &Context) -> Result<Bodies, Fault> {
+pub fn resolve(
+    bodies: &[Body],
+    (materials, domain): (&[NamedMaterial], Option<&Domain>),
+    context: &Context,
+) -> Result<Bodies, Fault> {
     let mut resolved = Bodies::default();
     for (i, body) in bodies.iter().enumerate() {
-        let declared = format!("bodies[{i}]");
+        let (declared, first) = (format!("bodies[{i}]"), resolved.all.len());
         Repeat::each(body.repeat.as_ref(), context, || {
             let one = body.resolve(materials, context)?;
             let Some(array) = &body.array else { return resolved.add(one, &body.name, &declared) };
             let places = array.place(&one.shape, &format!("{declared}.array"), context)?;
             resolved.add_copies(&one, &places, (&body.name, &declared), context)
         })?;
+        if let Some(mirrors) = body.cutting_mirrors(domain, context)? {
+            for one in &mut resolved.all[first..] {
+                one.shape = cut(one.shape.clone(), &mirrors, context.dimension.axes());
+            }
+        }
     }
     Ok(resolved)
+}
+
+/// A shape without what of it lies beyond mirrors; one that goes on without an end stays as it is.
+fn cut(shape: Shape, mirrors: &[Mirror], axes: usize) -> Shape {
+    let Some(bounds) = shape.bounds(axes).filter(Bounds::is_finite) else { return shape };
+    let behind = |mirror: &&Mirror| {
+        let end = if mirror.inward > 0.0 { bounds.min } else { bounds.max }[mirror.axis];
+        mirror.inward * (end - mirror.position) < 0.0
+    };
+    let half_space = |mirror: &Mirror| {
+        let along = |value: f64| std::array::from_fn(|k| if k == mirror.axis { value } else { 0.0 });
+        Shape::HalfSpace { point: along(mirror.position), normal: along(-mirror.inward) }
+    };
+    let mut parts = vec![shape];
+    parts.extend(mirrors.iter().filter(behind).map(half_space));
+    if parts.len() == 1 { parts.remove(0) } else { Shape::Intersection(parts) }
 }
 
 /// The number of the material that a text names.
@@ -223,6 +265,32 @@ pub fn material_of(text: &Text, materials: &[NamedMaterial], context: &Context) 
 }
 
 impl Body {
+    /// The mirrors that cut its shape, if they do.
+    fn cutting_mirrors(
+        &self,
+        domain: Option<&Domain>,
+        context: &Context,
+    ) -> Result<Option<Vec<Mirror>>, Fault> {
+        let Some(word) = &self.beyond_mirrors else { return Ok(None) };
+        if word.value(context)? == BeyondMirrors::Refused {
+            return Ok(None);
+        }
+        let faces = domain.into_iter().flat_map(|domain| {
+            (0..context.dimension.axes()).flat_map(move |axis| {
+                let [lower, upper] = domain.faces[axis];
+                let ends = [(lower, domain.min[axis], 1.0), (upper, domain.max[axis], -1.0)];
+                ends.into_iter()
+                    .filter(|(face, ..)| *face == Face::Symmetry)
+                    .map(move |(_, position, inward)| Mirror { axis, position, inward })
+            })
+        });
+        let mirrors: Vec<Mirror> = faces.collect();
+        match mirrors.is_empty() {
+            true => Err(word.refused(context, "\"refused\", as no face of the domain is \"symmetry\"")),
+            false => Ok(Some(mirrors)),
+        }
+    }
+
     fn resolve(&self, materials: &[NamedMaterial], context: &Context) -> Result<scene::Body, Fault> {
         let material = material_of(&self.material, materials, context)?;
         let mut body = scene::Body::new(&self.name.value(context)?, material, self.shape.resolve(context)?);

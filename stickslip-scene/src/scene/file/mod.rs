@@ -137,8 +137,9 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
 
     let time = file.time.resolve(context)?;
     let materials = file.materials.resolve(context)?;
-    let mut bodies = body::resolve(file.bodies.as_deref().unwrap_or_default(), &materials, context)?;
     let domain = file.space.domain(context)?;
+    let listed = file.bodies.as_deref().unwrap_or_default();
+    let mut bodies = body::resolve(listed, (&materials, domain.as_ref()), context)?;
     for (i, packing) in file.packings.iter().flatten().enumerate() {
         let declared = format!("packings[{i}]");
         packing.add_to(&mut bodies, (&materials, &declared), (domain.as_ref(), context))?;
