@@ -80,6 +80,7 @@ const TABLES: [&str; 15] = [
     "groups.csv",
     "group_contacts.csv",
     "removed.csv",
+    "fabric.csv",
 ];
 
 /// Reads a table: the first byte says which.
@@ -111,7 +112,8 @@ pub fn tables(bytes: &[u8]) {
             11 => drop(results.reactions_table()),
             12 => drop(results.groups_table()),
             13 => drop(results.group_contacts_table()),
-            _ => drop(results.removed_table()),
+            14 => drop(results.removed_table()),
+            _ => drop(results.fabric_table()),
         }
         if is_drawn(bytes) {
             let table = [

@@ -349,6 +349,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "reactions.csv",
         "groups.csv",
         "group_contacts.csv",
+        "fabric.csv",
         "probes.csv",
         "arrivals.csv",
         "fronts.csv",

@@ -43,6 +43,8 @@ pub enum ChartTable {
     Groups,
     /// Forces between groups
     GroupContacts,
+    /// Stress and fabric of packings
+    Fabric,
     /// What left the domain
     Removed,
     /// Stress and velocity at probes
@@ -84,6 +86,7 @@ impl ChartTable {
         let usual: &[&'static str] = match self {
             ChartTable::Contacts | ChartTable::GroupContacts => &["normal"],
             ChartTable::Removed => &["mass"],
+            ChartTable::Fabric => &["coordination"],
             _ => &[],
         };
         let named = tables::columns(self).into_iter().filter(|column| !usual.contains(column));

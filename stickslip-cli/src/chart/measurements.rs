@@ -75,6 +75,7 @@ pub fn chart(results: &Results, (table, choice): (ChartTable, &ChartChoice)) -> 
         | ChartTable::Reactions
         | ChartTable::Groups
         | ChartTable::GroupContacts
+        | ChartTable::Fabric
         | ChartTable::Removed
         | ChartTable::Contacts => {
             let mut rows = tables::rows(results, table)?;

@@ -9,7 +9,7 @@ mod tables;
 pub use contents::{ChartChoice, ChartTable, chart};
 pub use paper::{draw, svg};
 pub use runs::together;
-pub use tables::rows as table_rows;
+pub use tables::{rows as table_rows, rows_of_any};
 
 use crate::drawing::Rgb;
 

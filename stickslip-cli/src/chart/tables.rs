@@ -3,8 +3,8 @@
 use super::{ChartTable, Curve, Panel};
 use crate::drawing::body_color;
 use stickslip::observe::{
-    CellValue, ContactRow, GroupContactRow, GroupRow, JointRow, LoadRow, ReactionRow, ReadError, RemovedRow,
-    Results, SectionRow, TableRow,
+    CellValue, ContactRow, FabricRow, GroupContactRow, GroupRow, JointRow, LoadRow, ReactionRow, ReadError,
+    RemovedRow, Results, SectionRow, TableRow,
 };
 
 /// A row of a table.
@@ -31,9 +31,25 @@ pub fn rows(results: &Results, table: ChartTable) -> Result<Vec<NamedRow>, ReadE
         ChartTable::Reactions => named(results.reactions_table()?),
         ChartTable::Groups => named(results.groups_table()?),
         ChartTable::GroupContacts => named(results.group_contacts_table()?),
+        ChartTable::Fabric => named(results.fabric_table()?),
         ChartTable::Removed => named(results.removed_table()?),
         _ => Vec::new(),
     })
+}
+
+/// The rows of any table.
+///
+/// # Errors
+/// The table cannot be read.
+pub fn rows_of_any(results: &Results, table: ChartTable) -> Result<Vec<NamedRow>, ReadError> {
+    match table {
+        ChartTable::Bodies => results.bodies_table().map(named),
+        ChartTable::Energy => results.energy_table().map(named),
+        ChartTable::Probes => results.probes_table().map(named),
+        ChartTable::Arrivals => results.arrivals_table().map(named),
+        ChartTable::Fronts => results.fronts_table().map(named),
+        _ => rows(results, table),
+    }
 }
 
 /// Columns of numbers of such a table, without the time.
@@ -46,6 +62,7 @@ pub fn columns(table: ChartTable) -> Vec<&'static str> {
         ChartTable::Reactions => numbers_of::<ReactionRow>(),
         ChartTable::Groups => numbers_of::<GroupRow>(),
         ChartTable::GroupContacts => numbers_of::<GroupContactRow>(),
+        ChartTable::Fabric => numbers_of::<FabricRow>(),
         ChartTable::Removed => numbers_of::<RemovedRow>(),
         _ => Vec::new(),
     }
@@ -91,7 +108,10 @@ pub fn axis(column: &str) -> (&'static str, &'static str) {
         "area" => ("area", ""),
         "way" => ("way", ""),
         "rate" => ("rate", ""),
-        "nodes" | "bodies" | "particles" | "contacts" => ("number", ""),
+        "nodes" | "bodies" | "particles" | "contacts" | "coordination" | "mechanical" => ("number", ""),
+        "xx" | "yy" | "zz" | "xy" | "yz" | "xz" => ("stress", "Pa"),
+        "solid" => ("share of solid", ""),
+        column if column.starts_with("fabric_") => ("fabric", ""),
         _ => ("value", ""),
     }
 }
@@ -173,8 +193,10 @@ mod tests {
 
     #[test]
     fn every_column_of_numbers_has_an_axis() {
-        use ChartTable::{Contacts, GroupContacts, Groups, Joints, Loads, Reactions, Removed, Sections};
-        for table in [Contacts, Loads, Joints, Sections, Reactions, Groups, GroupContacts, Removed] {
+        use ChartTable::{
+            Contacts, Fabric, GroupContacts, Groups, Joints, Loads, Reactions, Removed, Sections,
+        };
+        for table in [Contacts, Loads, Joints, Sections, Reactions, Groups, GroupContacts, Fabric, Removed] {
             let columns = columns(table);
             assert!(columns.len() >= 6 && !columns.contains(&"time"), "{columns:?}");
             assert!(columns.iter().all(|column| axis(column).0 != "value"), "{columns:?}");

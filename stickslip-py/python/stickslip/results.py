@@ -99,7 +99,7 @@ class Results:
     """What a run left in a folder, finished or not.
 
     `results.bodies` is bodies.csv, and so for every table there: `energy`, `contacts`, `loads`, `joints`, `sections`,
-    `removed`, `groups`, `group_contacts`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes`.
+    `removed`, `groups`, `group_contacts`, `fabric`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes`.
     `results.bodies.dtype.names` are the columns; what each is, with its unit, stands in the book, book/07-outputs.md of
     the repository. Tables and snapshots are read when they are asked for.
     """

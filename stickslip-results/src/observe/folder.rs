@@ -5,9 +5,9 @@ use super::file::{OutputError, part_of};
 use super::manifest::{Manifest, Status};
 use super::waiting::Waiting;
 use super::{
-    ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, FRONT_SPEEDS,
-    FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
-    SURFACES,
+    ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FABRIC, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE,
+    FRONT_SPEEDS, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED,
+    SECTIONS, SURFACES,
 };
 use miette::Diagnostic;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 21] = [
+const FILES: [&str; 22] = [
     BODIES,
     ENERGY,
     CONTACTS,
@@ -29,6 +29,7 @@ const FILES: [&str; 21] = [
     REACTIONS,
     GROUPS,
     GROUP_CONTACTS,
+    FABRIC,
     PROBES,
     ARRIVALS,
     FRONTS,

@@ -4,6 +4,7 @@ use super::arrivals::ArrivalsObserver;
 use super::bodies::BodiesObserver;
 use super::contacts::ContactsObserver;
 use super::energy::EnergyObserver;
+use super::fabric::FabricObserver;
 use super::file::{OutputError, is_there};
 use super::folder::OutputFolder;
 use super::fringes::FringesObserver;
@@ -20,7 +21,7 @@ use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::surfaces::SurfacesObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FABRIC, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS,
     Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
 };
 use crate::door::View;
@@ -29,8 +30,8 @@ use crate::scene::{Leaving, Scene};
 /// Tables that keep their own length over a checkpoint: the file, and the part of the memory where they do.
 pub(super) fn tables() -> impl Iterator<Item = (&'static str, String)> {
     let under_their_name = [
-        BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, PROBES, ARRIVALS,
-        FRONTS,
+        BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, FABRIC, PROBES,
+        ARRIVALS, FRONTS,
     ];
     let of_groups = (GROUP_CONTACTS, format!("{GROUPS}/{PAIRS}"));
     under_their_name.map(|name| (name, name.to_string())).into_iter().chain([of_groups])
@@ -78,6 +79,9 @@ impl<'a> Recorder<'a> {
         }
         if !wanted.groups.is_empty() {
             recorder.schedule(GROUPS, GroupsObserver::create(scene, folder)?);
+        }
+        if !wanted.fabric.is_empty() {
+            recorder.schedule(FABRIC, FabricObserver::create(scene, folder)?);
         }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);

@@ -4,6 +4,7 @@ use super::arrivals::ArrivalRow;
 use super::bodies::BodyRow;
 use super::contacts::ContactRow;
 use super::energy::EnergyRow;
+use super::fabric::FabricRow;
 use super::file::{ReadError, ReadProblem};
 use super::frames::{Frame, read_frames};
 use super::fringes::{FringeRow, frame_file};
@@ -20,8 +21,8 @@ use super::removed::RemovedRow;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FRINGES, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS, GROUPS,
-    JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
+    ARRIVALS, BODIES, CONTACTS, ENERGY, FABRIC, FRINGES, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS,
+    GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -149,6 +150,14 @@ impl Results {
     /// The file is damaged.
     pub fn group_contacts_table(&self) -> Result<Vec<GroupContactRow>, ReadError> {
         self.measured(GROUP_CONTACTS)
+    }
+
+    /// `fabric.csv`: at each time but the first a row for each packing whose stress and fabric the scene asks for.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn fabric_table(&self) -> Result<Vec<FabricRow>, ReadError> {
+        self.measured(FABRIC)
     }
 
     /// `joints.csv`: at each time but the first a row for each joint; none if the scene has none.

@@ -101,6 +101,7 @@ impl Verified {
             results.reactions_table().err(),
             results.groups_table().err(),
             results.group_contacts_table().err(),
+            results.fabric_table().err(),
             results.removed_table().err(),
             results.probes_table().err(),
             results.arrivals_table().err(),

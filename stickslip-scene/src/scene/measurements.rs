@@ -24,6 +24,9 @@ pub struct Measurements {
     /// Bodies whose sums are recorded.
     #[serde(default)]
     pub groups: Vec<Group>,
+    /// Packings whose stress and fabric are recorded.
+    #[serde(default)]
+    pub fabric: Vec<Fabric>,
 }
 
 /// Words for the faces of a domain, by axis, the lower and the upper one.
@@ -44,6 +47,17 @@ pub struct Group {
     pub name: String,
     /// Names of its bodies.
     pub bodies: Vec<String>,
+}
+
+/// A packing whose stress and fabric are recorded, from the forces between its bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fabric {
+    /// Its name, unique among the packings that are recorded.
+    pub name: String,
+    /// Names of its bodies.
+    pub bodies: Vec<String>,
+    /// Lower and upper corner of the box over which stress is averaged; bodies count whose centres are in it [m].
+    pub within: [[f64; 3]; 2],
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.

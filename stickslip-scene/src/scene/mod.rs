@@ -41,7 +41,7 @@ pub use letters::escaped;
 pub use load::{Loaded, load, parse, parse_beside};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{
-    Anchor, Arrival, FACES, Front, Group, Measurements, Observable, Probe, Reading, Section, TimeUnit,
+    Anchor, Arrival, FACES, Fabric, Front, Group, Measurements, Observable, Probe, Reading, Section, TimeUnit,
 };
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use outside::{OutsideUse, OutsideValue};

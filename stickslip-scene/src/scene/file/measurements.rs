@@ -112,6 +112,21 @@ table! {
 }
 
 table! {
+    /// Bodies whose mean stress, contacts and their directions are recorded, from the forces between them.
+    Fabric {
+        /// Its name.
+        name: Text,
+        /// Makes many of it: indices, and how many values each has, as of [[bodies]]. By default one.
+        repeat: Option<Repeat>,
+        /// Names of its bodies, or patterns in which `*` is any letters; by default all that forces move.
+        bodies: Option<Vec<Text>>,
+        /// The box over which the stress is averaged: within = { min = [0, 0], max = [1, 1] }. Bodies count whose
+        /// centres are in it.
+        within: Room,
+    }
+}
+
+table! {
     /// A box.
     Room {
         /// Lower corner [m].
@@ -187,6 +202,8 @@ pub fn resolve(
     let what = "a face of the domain or the name of a rigid body";
     let reactions = names_in(reactions, (what, &known), context)?;
     let all: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    let moved = bodies.iter().filter(|body| !body.is_rigid() || body.as_free_rigid().is_some());
+    let moved: Vec<String> = moved.map(|body| body.name.clone()).collect();
     let free = bodies.iter().filter(|body| !body.is_rigid());
     let bodies: Vec<&str> = free.map(|body| body.name.as_str()).collect();
     let (mut probes, mut taken): (Vec<scene::Probe>, _) = (Vec::new(), HashSet::new());
@@ -222,6 +239,13 @@ pub fn resolve(
             Ok(())
         })?;
     }
+    let (mut fabric, mut taken) = (Vec::new(), HashSet::new());
+    for packing in outputs.fabric.iter().flatten() {
+        Repeat::each(packing.repeat.as_ref(), context, || {
+            fabric.push(packing.resolve((&all, &moved, &mut taken), context)?);
+            Ok(())
+        })?;
+    }
     let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
     let samples = match &outputs.samples {
         None => scene::Measurements::of_run(end).samples,
@@ -229,7 +253,17 @@ pub fn resolve(
         Some(Sampling::Every(interval)) => interval.positive(context)?,
     };
     Ok((
-        scene::Measurements { time_unit, samples, probes, arrivals, fronts, sections, reactions, groups },
+        scene::Measurements {
+            time_unit,
+            samples,
+            probes,
+            arrivals,
+            fronts,
+            sections,
+            reactions,
+            groups,
+            fabric,
+        },
         declared,
     ))
 }
@@ -362,6 +396,21 @@ impl Section {
                 None => bodies.iter().map(|name| name.to_string()).collect(),
             },
         })
+    }
+}
+
+impl Fabric {
+    fn resolve(
+        &self,
+        (all, moved, taken): (&[&str], &[String], &mut HashSet<String>),
+        context: &Context,
+    ) -> Result<scene::Fabric, Fault> {
+        let name = self.name.new_name(context, taken)?;
+        let bodies = match &self.bodies {
+            Some(list) => names_in(list, ("the name of a body", all), context)?,
+            None => moved.to_vec(),
+        };
+        Ok(scene::Fabric { name, bodies, within: self.within.value(context)? })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::fringes::Fringes;
-use super::measurements::{self, Arrival, Front, Group, Probe, Sampling, Section};
+use super::measurements::{self, Arrival, Fabric, Front, Group, Probe, Sampling, Section};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::{Choice, Count, Text, Word, names_in};
@@ -66,6 +66,8 @@ table! {
         reactions: Option<Vec<Text>>,
         /// Bodies whose sums are recorded, at the times of the tables: [[outputs.groups]].
         groups: Option<Vec<Group>>,
+        /// Packings whose stress and fabric are recorded, at the times of the tables: [[outputs.fabric]].
+        fabric: Option<Vec<Fabric>>,
     }
 }
 
