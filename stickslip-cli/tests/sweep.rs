@@ -86,6 +86,54 @@ fn another_sweep_in_a_folder_says_so_and_checkpoints_may_be_left_out() {
     assert!(workplace.path("scene.sweep/friction=0").exists());
 }
 
+/// Any number of any table stands in the table of the sweep, and is what the run's own table has.
+#[test]
+fn columns_of_ones_own_are_taken_from_the_tables_of_the_runs() {
+    let (workplace, short) = place();
+    let columns = [
+        "--column=fell=last bodies.y of disk",
+        "--column=highest=largest bodies.vy of d*",
+        "--column=mean=mean energy.kinetic",
+        "--column=least=smallest energy.total",
+        "--column=nobody=last bodies.y of disc",
+    ];
+    let sweep = [&["sweep", "scene.toml", "--set", "bodies[0].velocity=[0, 0],[0, 1]"][..], &columns, &short];
+    let said = workplace.succeed(&sweep.concat());
+    assert!(
+        said.lines().next().is_some_and(|head| head.contains("fell") && head.contains("highest")),
+        "{said}"
+    );
+    for row in table(&workplace, "scene.sweep") {
+        let read = |file: &str| -> Vec<BTreeMap<String, String>> {
+            let path = workplace.path("scene.sweep").join(&row["run"]).join(file);
+            csv::Reader::from_path(path).unwrap().deserialize().map(|row| row.unwrap()).collect()
+        };
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let of = |rows: &[BTreeMap<String, String>], column: &str| -> Vec<f64> {
+            rows.iter().map(|row| number(&row[column])).collect()
+        };
+        let mut bodies = read("bodies.csv");
+        bodies.retain(|row| row["body"] == "disk");
+        let energy = read("energy.csv");
+        assert_eq!(Some(&number(&row["fell"])), of(&bodies, "y").last());
+        assert_eq!(number(&row["highest"]), of(&bodies, "vy").into_iter().fold(f64::NEG_INFINITY, f64::max));
+        let kinetic = of(&energy, "kinetic");
+        let mean = kinetic.iter().sum::<f64>() / kinetic.len() as f64;
+        assert!((number(&row["mean"]) / mean - 1.0).abs() < 1e-12, "{row:?}");
+        assert_eq!(number(&row["least"]), of(&energy, "total").into_iter().fold(f64::INFINITY, f64::min));
+        assert!(!row.contains_key("nobody") || row["nobody"].is_empty(), "{row:?}");
+        assert_eq!(row["error"], "column `nobody`: bodies.csv has no number of `disc` in y");
+    }
+    let refused =
+        workplace.run(&["sweep", "scene.toml", "--set", "friction=0,1", "--column", "a=last bodies.q"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("found the column `q` of bodies; allowed: x, y, z"),
+        "{}",
+        refused.stderr
+    );
+}
+
 #[test]
 fn a_run_that_fails_is_named_and_the_others_go_on() {
     let (workplace, short) = place();

@@ -8,7 +8,9 @@ use crate::drawing::DrawError;
 use crate::failure::Failure;
 use crate::progress::{FamilyDisplay, terminal};
 use crate::ranks;
-use crate::sweep::{self, Crew, Family, Member, News, Plan, Sweep, SweepRecord, SweepRow, Variation};
+use crate::sweep::{
+    self, Crew, Family, Member, News, OwnColumn, Plan, Sweep, SweepRecord, SweepRow, Variation,
+};
 use crate::tell::tell;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
@@ -30,6 +32,12 @@ pub struct Arguments {
     /// Values of a named parameter, separated by commas; a single value holds for all runs; may be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE,...", value_parser = variation)]
     variations: Vec<Variation>,
+
+    /// A column of sweep.csv of your own: `peak=largest contacts.normal`, `sink=last bodies.y of pile`; of a table as
+    /// `stickslip plot --table` names it, the `largest`, `smallest`, `last` or `mean` of a column, of all rows or those
+    /// of a name or pattern; may be repeated.
+    #[arg(long = "column", value_name = "NAME=WHICH TABLE.COLUMN [of ROW]", value_parser = column)]
+    columns: Vec<OwnColumn>,
 
     /// Folder for the results; the name of the scene with `.sweep`, in this folder, without this.
     #[arg(long, value_name = "DIR")]
@@ -71,6 +79,11 @@ pub struct Arguments {
 fn variation(text: &str) -> Result<Variation, String> {
     let (name, list) = assignment(text)?;
     Variation::new(&name, &list)
+}
+
+fn column(text: &str) -> Result<OwnColumn, String> {
+    let (name, what) = assignment(text)?;
+    OwnColumn::new(&name, &what)
 }
 
 impl Arguments {
@@ -176,10 +189,15 @@ impl Arguments {
             self.check()?;
             let folder = self.out.clone().unwrap_or_else(|| default_folder(&self.scene, "sweep"));
             let plan = Plan::new(&self.scene, &folder, self.variations.clone());
-            return Ok((plan.into_diagnostic().map_err(Failure::Run)?, folder));
+            let plan = plan.into_diagnostic().map_err(Failure::Run)?;
+            return Ok((Plan { columns: self.columns.clone(), ..plan }, folder));
         }
-        if !self.variations.is_empty() || self.out.is_some() {
-            let option = if self.out.is_some() { "--out" } else { "--set" };
+        let given = [
+            ("--out", self.out.is_some()),
+            ("--set", !self.variations.is_empty()),
+            ("--column", !self.columns.is_empty()),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
             return Err(Failure::Input(miette!(
                 "{option}: found the folder of a sweep, which goes on as it was begun; allowed: with a scene file"
             )));
@@ -212,6 +230,13 @@ impl Arguments {
             return Err(Failure::Input(miette!(
                 "--set: found `{}` twice; allowed: each name once, its values separated by commas",
                 names[again]
+            )));
+        }
+        let columns: Vec<&str> = self.columns.iter().map(|column| column.name.as_str()).collect();
+        if let Some(again) = (1..columns.len()).find(|&i| columns[..i].contains(&columns[i])) {
+            return Err(Failure::Input(miette!(
+                "--column: found `{}` twice; allowed: each name once",
+                columns[again]
             )));
         }
         if sweep::varied(&self.variations).is_empty() {

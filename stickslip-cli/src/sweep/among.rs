@@ -44,7 +44,8 @@ impl Family {
         let share = self.runs.div_ceil(processes).max(1);
         let jobs = jobs.unwrap_or(threads).clamp(1, share);
         let (scene, checkpoint_every) = (self.scene.0.clone(), self.checkpoint_every);
-        Crew { jobs, threads: (threads / jobs).max(1), folder, scene, checkpoint_every, stop }
+        let (threads, columns) = ((threads / jobs).max(1), self.plan.columns.clone());
+        Crew { jobs, threads, folder, scene, columns, checkpoint_every, stop }
     }
 }
 

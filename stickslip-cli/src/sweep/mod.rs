@@ -2,6 +2,7 @@
 
 pub mod among;
 mod chart;
+mod column;
 mod plan;
 mod record;
 mod script;
@@ -9,6 +10,7 @@ mod table;
 
 pub use among::Family;
 pub use chart::chart;
+pub use column::OwnColumn;
 pub use plan::{Member, Plan, Variation, members, varied};
 pub use record::{
     Sweep, SweepRecord, SweepRow, forget_row, is_sweep, prepare, read, read_record, read_row, write_row,
@@ -40,6 +42,8 @@ pub struct Crew {
     pub folder: PathBuf,
     /// The scene file, for the record of each run.
     pub scene: PathBuf,
+    /// Columns of the user's own.
+    pub columns: Vec<OwnColumn>,
     /// Wall time between the checkpoints of a run; without one there are none.
     pub checkpoint_every: Option<Duration>,
     /// Set by whoever wants the runs to stop.
@@ -169,11 +173,26 @@ impl Crew {
         match outcome {
             Err(error) => failed(error),
             Ok(summary) => match (drawn, Results::open(out)) {
-                (Ok(_), Ok(results)) => row(&summary, loaded, &results),
+                (Ok(_), Ok(results)) => self.with_own_columns(row(&summary, loaded, &results), &results),
                 (Err(failure), _) => failed(failure.to_string()),
                 (_, Err(error)) => failed(error.to_string()),
             },
         }
+    }
+
+    /// The row with what the user's own columns have of the results; of a column without a number it says why.
+    fn with_own_columns(&self, mut row: SweepRow, results: &Results) -> SweepRow {
+        let mut missing = Vec::new();
+        // Of a name that the table has already, the user's own stands there.
+        row.figures.retain(|(name, _)| self.columns.iter().all(|column| column.name != *name));
+        for column in &self.columns {
+            match column.of(results) {
+                Ok(value) => row.figures.push((column.name.clone(), value)),
+                Err(why) => missing.push(format!("column `{}`: {why}", column.name)),
+            }
+        }
+        row.error = missing.join("; ");
+        row
     }
 
     /// As `stickslip run` makes a run of the scene with these settings.

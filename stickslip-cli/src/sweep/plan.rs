@@ -1,5 +1,6 @@
 //! Which runs a sweep is made of.
 
+use super::OwnColumn;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,9 @@ pub struct Plan {
     pub scene: PathBuf,
     /// What is set.
     pub variations: Vec<Variation>,
+    /// Columns of the user's own.
+    #[serde(default)]
+    pub columns: Vec<OwnColumn>,
 }
 
 /// A parameter or key and the values that it takes.
@@ -61,7 +65,7 @@ impl Plan {
     pub fn new(scene: &Path, folder: &Path, variations: Vec<Variation>) -> io::Result<Self> {
         let [scene, folder] = [std::path::absolute(scene)?, std::path::absolute(folder)?];
         let scene = scene.strip_prefix(&folder).map_or(scene.clone(), Path::to_path_buf);
-        Ok(Plan { scene, variations })
+        Ok(Plan { scene, variations, columns: Vec::new() })
     }
 
     /// The scene file of a sweep in this folder.

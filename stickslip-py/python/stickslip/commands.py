@@ -112,9 +112,18 @@ def plot(
 
 
 def sweep(
-    scene: Scene, out: Folder, *, jobs: int | None = None, threads: int | None = None, **values: Any
+    scene: Scene,
+    out: Folder,
+    *,
+    columns: dict[str, str] | None = None,
+    jobs: int | None = None,
+    threads: int | None = None,
+    **values: Any,
 ) -> Sweep:
     """Runs a scene with every combination of values of its parameters: `sweep(scene, "out", friction=(0, 0.3))`.
+
+    `columns` adds numbers of the runs' tables to the table: `columns={"peak": "largest contacts.normal of disk"}`, the
+    `largest`, `smallest`, `last` or `mean` of a column.
 
     `out` is a new folder, or that of an earlier sweep, which is run anew; the scene is written there, as scene.toml. A
     sweep that was stopped goes on by `stickslip sweep out`. Scenes with functions of Python are not for it: run them
@@ -137,7 +146,8 @@ def sweep(
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     scene.save(file)
-    done = _carried_out("sweep", file, set=given, out=out, jobs=jobs, threads=threads)
+    own = [f"{name}={what}" for name, what in (columns or {}).items()]
+    done = _carried_out("sweep", file, set=given, column=own, out=out, jobs=jobs, threads=threads)
     if done.returncode == REFUSED:
         # Nothing was run: the folder is what it was.
         file.unlink() if before is None else file.write_bytes(before)
