@@ -42,7 +42,18 @@ per metre of depth. Results replace finished ones of the same folder.
 
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from . import _core
+try:
+    from . import _core
+except ImportError as _missing:
+    if "cannot import name" not in str(_missing):
+        raise
+    _files = __path__[0]
+    raise ImportError(
+        f"the Python files of Stickslip in {_files} have no engine beside them: they are those of a source tree. Build "
+        "and install it with `pip install .` at the root of the tree (which needs Rust; `maturin develop --release` "
+        "for work on it), and take that folder out of PYTHONPATH, or start Python elsewhere",
+        name="stickslip._core",
+    ) from None
 from .commands import Picture, Sweep, plot, render, sweep, validate
 from .errors import ResultsError, RunError, SceneError, StepError, StickslipError, StickslipWarning
 from .functions import Function, Law, Step
