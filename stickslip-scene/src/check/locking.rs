@@ -69,8 +69,8 @@ pub(super) fn bending(scene: &Scene) -> Option<Warning> {
         format!(
             "a Poisson's ratio of {:.3} with {:.1} cells across: {} bends too stiffly; a beam of four cells sags by 0.93 \
              of what it should at 0.4, by 0.89 at 0.45 and by 0.64 at 0.49, one of eight by 0.83 at 0.49 (gimp); take \
-             space.basis = \"spline\" (0.97 at 0.49), volume_change = \"averaged\" for its material (0.91), or smaller \
-             cells; if it does not bend, this does no harm",
+             volume_change = \"averaged\" for its material (0.91), smaller cells, or space.basis = \"spline\" (0.97 at \
+             0.49), by which what rolls or swings for long loses its motion; if it does not bend, this does no harm",
             ratio(body),
             thickness / cell,
             and_more(&format!("`{}`", scene.bodies[body].name), thin.len() - 1),

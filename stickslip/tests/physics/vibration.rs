@@ -63,3 +63,41 @@ fn a_beam_goes_on_to_bend_to_and_fro() {
         assert!((0.85..1.02).contains(&left), "{basis}: {left}");
     }
 }
+
+/// Speed that a disk of rubber with so many cells a radius keeps while it rolls for two turns on a rigid floor.
+fn rolled(cells: usize, basis: &str) -> f64 {
+    let end = 2.0 * 2.0 * std::f64::consts::PI * 0.1;
+    let mut simulation = start(&format!(
+        r#"
+        gravity = [0, -10]
+        space = {{ dimension = "plane-strain", cell = "0.1 m / {cells}", basis = "{basis}" }}
+        time.end = {end}
+        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+        [[bodies]]
+        name = "disk"
+        material = "rubber"
+        shape.ball = {{ center = [0, 0.1], radius = 0.1 }}
+        velocity = [1, 0]
+        spin = -10
+        [[bodies]]
+        name = "floor"
+        material = "rubber"
+        shape.half_space = {{ point = [0, 0], normal = [0, 1] }}
+        rigid = {{}}
+        [[contact]]
+        friction = 0.5
+        "#
+    ));
+    run_to(&mut *simulation, end, |_| {});
+    simulation.bodies()[0].velocity[0]
+}
+
+/// What rolls loses its speed to noise, and only smaller cells help: splines, by which a disk that spins in flight has
+/// the right stress, slow it down far more. Measured 0.87 and 0.96 of its speed by `gimp` with 4 and 8 cells a radius,
+/// 0.87 by `cpdi` with 4, 0.36 by `spline`; exact is 1.
+#[test]
+fn what_rolls_loses_less_by_gimp_than_by_splines() {
+    let [gimp, spline] = ["gimp", "spline"].map(|basis| rolled(4, basis));
+    println!("speed left after two turns: gimp {gimp:.3}, spline {spline:.3}");
+    assert!((0.82..1.0).contains(&gimp) && spline < 0.5, "{gimp} {spline}");
+}

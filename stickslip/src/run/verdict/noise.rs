@@ -16,13 +16,19 @@ impl Check for NoiseCheck {
 
     fn advice(&self, scene: &Scene) -> &'static str {
         match scene.discretization.basis {
-            BasisKind::Cpdi => {
-                "what bends, twists or spins loses its motion to it: try smaller cells, smaller deflections; see the \
-                 column `damping` of energy.csv"
+            BasisKind::Gimp | BasisKind::Linear => {
+                "what bends, twists, spins or rolls loses its motion to it: try smaller cells, smaller deflections; \
+                 space.basis = \"cpdi\" keeps more of a swing in place, hardly more of rolling; see the column `damping` of \
+                 energy.csv"
             }
-            _ => {
-                "what bends, twists or spins loses its motion to it: try space.basis = \"cpdi\", smaller cells, \
-                 smaller deflections; see the column `damping` of energy.csv"
+            BasisKind::Cpdi | BasisKind::Cubic => {
+                "what bends, twists, spins or rolls loses its motion to it: try smaller cells, smaller deflections; see \
+                 the column `damping` of energy.csv"
+            }
+            BasisKind::Spline => {
+                "what bends, twists, spins or rolls loses its motion to it: try smaller cells, smaller deflections, \
+                 space.basis = \"gimp\", by which what rolls or swings loses less than by splines; see the column \
+                 `damping` of energy.csv"
             }
         }
     }
