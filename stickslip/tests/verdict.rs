@@ -913,3 +913,34 @@ fn rings_that_meet_head_on_are_not_doubted() {
         judge(text, &mut *simulation).1.into_iter().map(|warning| warning.kind).collect();
     assert!(!kinds.contains(&"angular-momentum".to_string()), "{kinds:?}");
 }
+
+/// Local damping is for bodies that come to rest: one that spins loses half of its spin in a third of a turn, and is
+/// told. One that settles is not.
+#[test]
+fn local_damping_of_what_turns_is_told() {
+    let found = |gravity: f64, body: &str| -> Vec<String> {
+        let text = format!(
+            r#"
+            gravity = [0, -{gravity}]
+            space = {{ dimension = "plane-strain", cell = 0.1, domain = {{ min = [-2, -1], max = [2, 1], y_min = "fixed" }} }}
+            time = {{ end = 4, max_step = 2e-3 }}
+            damping.local = 0.3
+            [materials.gel]
+            density = 1000
+            neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }}
+            [[bodies]]
+            name = "body"
+            material = "gel"
+            {body}
+            [outputs]
+            particles = "never"
+            "#
+        );
+        let scene = scene::parse("turns.toml", &text, &[]).expect("a scene").scene;
+        let mut simulation = stickslip::step::build(&scene).expect("no problem");
+        judge(&text, &mut *simulation).1.into_iter().map(|warning| warning.message).collect()
+    };
+    let spins = found(0.0, "shape.ball = { center = [0, 0], radius = 0.5 }\nspin = 1").concat();
+    assert!(spins.contains("`body` moves on and on, and local damping slows it"), "{spins}");
+    assert!(found(1.0, "shape.box = { min = [-0.5, -1], max = [0.5, -0.4] }").is_empty());
+}

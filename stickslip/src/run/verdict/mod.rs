@@ -28,7 +28,7 @@ use neighbours::Neighbours;
 fn checks(scene: &Scene) -> Vec<Box<dyn Check>> {
     let all: [Box<dyn Check>; 13] = [
         Box::new(energy::EnergyCheck),
-        Box::new(noise::NoiseCheck),
+        Box::new(noise::NoiseCheck::default()),
         Box::new(momentum::MomentumCheck::default()),
         Box::new(spin::SpinCheck::default()),
         Box::new(strain::StrainCheck::default()),
