@@ -145,3 +145,20 @@ fn types_and_units() {
         ],
     );
 }
+
+#[test]
+fn laws_of_other_programs_have_an_answer() {
+    let law = MINIMAL.lines().find(|line| line.starts_with("neo_hookean")).expect("a law");
+    for (other, answer) in [
+        ("drucker_prager", "here: no law whose strength grows with the pressure"),
+        ("cam_clay", "here: no law that hardens as it is compacted"),
+        ("johnson_cook", "here: `von_mises`, with yield_stress = A"),
+        ("mooney_rivlin", "here: `neo_hookean`, with shear_modulus = 2 (C10 + C01)"),
+        ("elastic", "here: `hypoelastic`, Hooke's law"),
+    ] {
+        let text = edited(MINIMAL, law, &format!("{other} = {{ young_modulus = 1e6 }}"));
+        let error = scene::parse("a.toml", &text, &[]).expect_err("no law of ours").to_string();
+        assert!(error.contains(&format!("found unknown key `{other}`; allowed: density, ")), "{error}");
+        assert!(error.contains(&format!("; {answer}")), "{error}");
+    }
+}

@@ -1,9 +1,9 @@
 //! `[materials.NAME]`: density and a law from the list with its constants.
 
-use super::Context;
 use super::quantity::{Density, QuantityInput, Ratio, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
 use super::text::{Choice, Text, Word};
+use super::{Context, other_laws};
 use crate::material::{Constant, Form, Given, LAWS, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law};
 use crate::outside::OUTSIDE;
 use crate::scene::error::Fault;
@@ -43,6 +43,12 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
     let keys: Vec<&str> = own.into_iter().chain(laws.iter().copied()).chain([OUTSIDE]).collect();
     if node.name == "any" {
         return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
+    }
+    let other = |child: &&DocumentNode| !keys.contains(&child.name.as_str());
+    if let Some((child, answer)) =
+        node.children().iter().find(other).and_then(|child| Some((child, other_laws::answer(&child.name)?)))
+    {
+        return Err(unknown_key(child, &keys).help(Some(answer.to_string())));
     }
     check_keys(node, &keys)?;
     let density = field::<QuantityInput<Density>>(node, "density")?.positive(context)?;

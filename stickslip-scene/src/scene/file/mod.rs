@@ -16,6 +16,7 @@ mod measurements;
 mod mesh;
 mod named_shapes;
 mod obj;
+mod other_laws;
 mod outline;
 mod outputs;
 mod outside;

@@ -1,0 +1,165 @@
+//! Names of laws that other programs have, and what there is here for each.
+
+/// What stands here for a law of another program, by its names there, without case, `_`, `-` and spaces.
+const ELSEWHERE: &[(&[&str], &str)] = &[
+    (
+        &["elastic", "isotropic", "linear", "linearelastic", "elas", "hooke", "saintvenantkirchhoff", "stvk"],
+        "here: `hypoelastic`, Hooke's law that turns with the material, for small strains; `neo_hookean` for large ones",
+    ),
+    (
+        &["neohooke", "neoh", "compneohook", "hyperelastic", "corotated", "fixedcorotated", "jelly"],
+        "here: `neo_hookean`, for large strains and rotations",
+    ),
+    (
+        &["mooneyrivlin", "mooney", "ogden", "yeoh", "arrudaboyce", "gent"],
+        "here: `neo_hookean`, with shear_modulus = 2 (C10 + C01), the same at small strain; what it lacks at large ones is \
+         a law of your own in Python, chapter 15",
+    ),
+    (
+        &[
+            "plastic",
+            "elastoplastic",
+            "isoplasticity",
+            "j2",
+            "j2plasticity",
+            "pla1",
+            "pla2",
+            "compneohookplastic",
+        ],
+        "here: `von_mises`, with yield_stress and hardening_modulus",
+    ),
+    (
+        &[
+            "johnsoncook",
+            "john",
+            "sjc",
+            "sjcf",
+            "jc",
+            "jcf",
+            "steinberg",
+            "steinbergcochranguinan",
+            "zerilliarmstrong",
+        ],
+        "here: `von_mises`, with yield_stress = A and a hardening_modulus for B and n; hardening by the rate and softening \
+         by heat have no counterpart but a law of your own in Python, chapter 15",
+    ),
+    (
+        &["druckerprager", "dpm", "mohrcoulomb", "sand", "soil", "granular", "mudi", "muirheology"],
+        "here: no law whose strength grows with the pressure; a law of your own in Python, chapter 15, or grains as \
+         bodies, [[packings]] with `friction`",
+    ),
+    (
+        &[
+            "camclay",
+            "clay",
+            "modifiedcamclay",
+            "mcc",
+            "norsand",
+            "cap",
+            "crushablefoam",
+            "foam",
+            "snow",
+            "hypoplastic",
+        ],
+        "here: no law that hardens as it is compacted; a law of your own in Python, chapter 15",
+    ),
+    (
+        &["newtonian", "newtonianfluid", "bingham", "fluid", "liquid", "water", "viscousfluid", "null"],
+        "here: `neo_hookean` with shear_modulus = 0 is a fluid without viscosity; viscous ones are laws of your own in \
+         Python, chapter 15",
+    ),
+    (
+        &["eos", "miegruneisen", "gruneisen", "tillotson", "jwl", "hiex", "shock", "idealgas", "gas", "seos"],
+        "here: no equation of state; a law of your own in Python, chapter 15",
+    ),
+    (
+        &[
+            "maxwell",
+            "kelvinvoigt",
+            "zener",
+            "sls",
+            "prony",
+            "generalizedmaxwell",
+            "maxwellweichert",
+            "viscous",
+        ],
+        "here: `viscoelastic`, with bulk_modulus, shear_modulus and a list `prony`; `[damping]` slows a whole body down",
+    ),
+    (
+        &[
+            "isosoftening",
+            "brittle",
+            "concrete",
+            "rankine",
+            "phasefield",
+            "fracture",
+            "cohesivezone",
+            "gurson",
+        ],
+        "here: `damage`, which softens as it cracks, with tensile_strength and fracture_energy",
+    ),
+    (
+        &["orthotropic", "anisotropic", "transverselyisotropic", "cubic", "composite", "fibre", "fiber"],
+        "here: all laws are isotropic; one that is not is a law of your own in Python, chapter 15",
+    ),
+    (&["rigid", "rigidcontact", "rigidbc"], "here: a key of the body, rigid = {}; its material is any"),
+    (
+        &["type", "model", "law", "constitutivemodel", "constitutivelaw", "umat", "vumat"],
+        "here: a law is a table by its own name, such as neo_hookean = { young_modulus = \"1 MPa\", poisson_ratio = 0.3 }; \
+         a law of your own is a function in Python, chapter 15",
+    ),
+    (
+        &[
+            "e",
+            "youngsmodulus",
+            "youngmodulus",
+            "nu",
+            "poissonratio",
+            "poisson",
+            "bulkmodulus",
+            "shearmodulus",
+            "k",
+            "g",
+        ],
+        "here: a constant of the law, in its table: neo_hookean = { young_modulus = \"1 MPa\", poisson_ratio = 0.3 }",
+    ),
+];
+
+/// What there is here for a law of this name in another program.
+pub fn answer(name: &str) -> Option<&'static str> {
+    let plain: String = name.to_lowercase().chars().filter(|letter| letter.is_alphanumeric()).collect();
+    ELSEWHERE.iter().find(|(names, _)| names.contains(&plain.as_str())).map(|(_, answer)| *answer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::LAWS;
+
+    #[test]
+    fn names_are_found_as_other_programs_write_them() {
+        for name in
+            ["drucker_prager", "DruckerPrager", "Mohr-Coulomb", "cam_clay", "johnson_cook", "Mooney Rivlin"]
+        {
+            assert!(answer(name).is_some_and(|text| text.starts_with("here: ")), "{name}");
+        }
+        assert_eq!(answer("rubber"), None);
+    }
+
+    /// No name stands twice, none is a law of ours, and what is named in answers is.
+    #[test]
+    fn every_name_has_one_answer() {
+        let names: Vec<&str> = ELSEWHERE.iter().flat_map(|(names, _)| *names).copied().collect();
+        for (i, name) in names.iter().enumerate() {
+            assert!(!names[..i].contains(name), "{name}");
+            assert!(LAWS.iter().all(|law| law.name.replace('_', "") != *name), "{name}");
+        }
+        for law in LAWS {
+            assert!(
+                ELSEWHERE.iter().any(|(_, answer)| answer.contains(&format!("`{}`", law.name))),
+                "{}",
+                law.name
+            );
+        }
+    }
+}
