@@ -20,7 +20,12 @@ pub fn run(bytes: &[u8]) {
 
 /// Tables with and without a header.
 pub fn seeds() -> Vec<Vec<u8>> {
-    ["time,value\n0,1\n0.5,2\n", "0, 1e3\r\n1e-3,\"5\",more\n", "\u{feff}t;v\n1,2\n"]
-        .map(|text| text.as_bytes().to_vec())
-        .into()
+    [
+        "time,value\n0,1\n0.5,2\n",
+        "time [ms],F (kN)\n0,1\n1,2\n",
+        "0, 1e3\r\n1e-3,\"5\"\n",
+        "\u{feff}t;v\n1,2\n",
+    ]
+    .map(|text| text.as_bytes().to_vec())
+    .into()
 }

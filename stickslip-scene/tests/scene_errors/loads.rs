@@ -337,6 +337,76 @@ fn a_table_from_a_file() {
     assert!(error.contains("allowed: a file that can be read"), "{error}");
 }
 
+/// The force at 1 ms by a file of these lines, 3 kN in all of them, or what is wrong with it.
+fn force_of(csv: &str, keys: &str) -> Result<f64, String> {
+    let table = format!("{{ csv = \"push.csv\" {keys} }}");
+    let text = LOADED.replace(r#"{ table = [["0 s", 0], ["1 ms", "3 kN"]] }"#, &table);
+    let files = std::collections::BTreeMap::from([("push.csv".into(), csv.as_bytes().to_vec())]);
+    let loaded = scene::parse_beside("a.toml", &text, &[], &files).map_err(|error| error.to_string())?;
+    let scene::Action::Force([x, ..]) = &loaded.scene.loads[1].action else { panic!("a force") };
+    Ok(x.at(1e-3))
+}
+
+#[test]
+fn a_table_has_the_units_of_its_head() {
+    for csv in [
+        "time [ms], force [kN]\n0, 0\n1, 3\n",
+        "t (us),F (N)\n0,0\n1000,3000\n",
+        "t / ms,F / kN\n0,0\n1,3\n",
+        "t_s, force_N\n0, 0\n1e-3, 3000\n",
+        // Of a plane scene per metre of depth, too; and what some programs end lines with.
+        "time [ms], line load [kN/m],\n0, 0,\n1, 3,\n",
+    ] {
+        assert_eq!(force_of(csv, "").map(|force| (force / 3000.0 * 1e9).round()), Ok(1e9), "{csv}");
+    }
+    for (csv, found) in [
+        (
+            "time [ms], force [MPa]\n0, 0\n",
+            "in row 1 of push.csv: `force [MPa]`; allowed: the unit of a force [N] in",
+        ),
+        (
+            "time [fortnights], force\n0, 0\n",
+            "in row 1 of push.csv: `time [fortnights]`; allowed: the unit of a time",
+        ),
+        (
+            "time_ms, force\n0, 0\n",
+            "in row 1 of push.csv: `time_ms`; allowed: units in brackets, `time [ms]`",
+        ),
+        (
+            "time, force kN\n0, 0\n",
+            "in row 1 of push.csv: `force kN`; allowed: units in brackets, `force [kN]`",
+        ),
+    ] {
+        let error = force_of(csv, "").expect_err(csv);
+        assert!(error.contains(found), "{error}");
+    }
+}
+
+#[test]
+fn a_table_of_more_columns_says_which_are_meant() {
+    let csv = "t [ms], p, F [kN]\n0, 7, 0\n1, 7, 3\n";
+    for columns in ["[1, 3]", "[\"t\", \"f\"]", "[\"t [ms]\", 3]"] {
+        assert_eq!(force_of(csv, &format!(", columns = {columns}")), Ok(3000.0), "{columns}");
+    }
+    for (csv, keys, found) in [
+        (
+            "0,1,5\n1,2,5\n",
+            "",
+            "in row 1 of push.csv: 3 columns, `0, 1, 5`; allowed: two, a time and a value",
+        ),
+        ("0,1\n1,2,5\n", "", "in row 2 of push.csv: 3 columns, `1, 2, 5`; allowed: two, a time and a value"),
+        (
+            "t,F\n0,1\n",
+            ", columns = [\"t\", \"G\"]",
+            "no column `G`; allowed: one of those that it names: t, F",
+        ),
+        ("t,F\n0,1\n", ", columns = [1, 0]", "the column 0; allowed: the columns of the time and the value"),
+    ] {
+        let error = force_of(csv, keys).expect_err(csv);
+        assert!(error.contains(found), "{error}");
+    }
+}
+
 #[test]
 fn a_load_on_nothing() {
     let text = LOADED.replace("on = \"x_min\"", "within.ball = { center = [5, 5], radius = 1 }");

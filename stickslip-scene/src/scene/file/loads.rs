@@ -1,7 +1,7 @@
 //! `[[supports]]` and `[[loads]]`: what holds, presses, pulls or drives parts of bodies from outside.
 
 use super::Context;
-use super::files::read_file;
+use super::csv_table::{CsvTable, TableColumns};
 use super::outside::OrOutside;
 use super::quantity::{
     Acceleration, Duration, Force, ForceOverVelocity, Length, Measure, Pressure, QuantityInput, Ratio,
@@ -466,9 +466,13 @@ table! {
     TableInput {
         /// Rows of a time and a value, times ascending: [["0 s", 0], ["1 ms", "3 kN"]].
         table: Option<Rows>,
-        /// A file of them instead, text with a time and a value in SI units on each line: "0.001, 3000". The first line
-        /// may name the columns; a relative path starts at the folder of the scene file.
+        /// A file of them instead, text with a time and a value on each line: "0.001, 3000", in SI units, or in those
+        /// that the first line has in brackets: "time [ms], force [kN]". A relative path starts at the folder of the
+        /// scene file.
         csv: Option<Text>,
+        /// Which columns of a file with more than two are the time and the value, by their names in the first line or by
+        /// number from 1: ["time", "force"].
+        columns: Option<TableColumns>,
     }
 }
 
@@ -478,9 +482,9 @@ pub struct Rows(DocumentNode, Vec<[DocumentNode; 2]>);
 impl TableInput {
     fn resolve<M: Measure>(&self, node: &DocumentNode, context: &Context) -> Result<TimeTable, Fault> {
         match (&self.table, &self.csv) {
-            (Some(rows), None) => rows.resolve::<M>(context),
-            (None, Some(file)) => read_csv(file, context),
-            _ => Err(node.fault("one of the keys table and csv")),
+            (Some(rows), None) if self.columns.is_none() => rows.resolve::<M>(context),
+            (None, Some(file)) => CsvTable { file, columns: self.columns.as_ref(), context }.read::<M>(),
+            _ => Err(node.fault("one of the keys table and csv, and columns beside csv only")),
         }
     }
 }
@@ -506,53 +510,6 @@ impl Rows {
         }
         TimeTable::new(table).ok_or_else(|| node.fault(Rows::wanted()))
     }
-}
-
-fn begins_as_number(field: &str) -> bool {
-    field.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first))
-}
-
-/// Bytes that a file of a table may have.
-const LARGEST_TABLE: u64 = 1 << 26;
-
-/// A table from a file.
-fn read_csv(file: &Text, context: &Context) -> Result<TimeTable, Fault> {
-    let name = file.value(context)?;
-    let path = context.folder.join(&name);
-    let bytes = read_file(file, (&name, &path), (context.files, LARGEST_TABLE))?;
-    let mut format = csv::ReaderBuilder::new();
-    format.has_headers(false).flexible(true).trim(csv::Trim::All);
-    let mut table: Vec<[f64; 2]> = Vec::new();
-    // What some programs put before text.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
-    for (line, record) in format.from_reader(bytes).records().enumerate() {
-        let wrong = |found: String, allowed: &str| {
-            let mut fault = file.refused(&name, allowed);
-            fault.problem.found = format!("in row {} of {name}: {found}", line + 1);
-            fault
-        };
-        let record = record.map_err(|reason| wrong(reason.to_string(), "text"))?;
-        let number =
-            |column: usize| record.get(column)?.parse().ok().filter(|number: &f64| number.is_finite());
-        match [number(0), number(1)] {
-            [Some(time), Some(value)] => {
-                if table.last().is_some_and(|[before, _]| *before >= time) {
-                    return Err(wrong(format!("the time {time} s"), "a time after that of the row before"));
-                }
-                table.push([time, value]);
-            }
-            _ if line == 0 && record.iter().all(|field| !begins_as_number(field)) => {}
-            _ => {
-                let found = record.iter().collect::<Vec<_>>().join(", ");
-                return Err(wrong(
-                    format!("`{found}`"),
-                    "a time and a value, numbers in SI units with a comma between them",
-                ));
-            }
-        }
-    }
-    TimeTable::new(table)
-        .ok_or_else(|| file.refused(&name, "a file with at least one row of a time and a value"))
 }
 
 impl Read for Rows {

@@ -4,6 +4,7 @@
 mod array;
 mod body;
 mod contact;
+mod csv_table;
 mod damping;
 mod files;
 mod fringes;
