@@ -11,6 +11,7 @@ mod hertz;
 mod joints;
 mod loads;
 mod locking;
+mod mass;
 mod measurements;
 mod memory;
 mod neighbours;
@@ -60,6 +61,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     let extents = bodies::measure(scene)?;
     bodies::check_domain(scene, &extents)?;
     periodic::check(scene, &extents)?;
+    mass::check(scene, &extents)?;
     // Where bodies begin elsewhere, whoever lets them begin looks.
     if scene.start.is_none() {
         overlap::check(scene, &extents)?;

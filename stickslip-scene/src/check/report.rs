@@ -7,7 +7,7 @@ use super::memory::Footprint;
 use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
-use super::{examine, joints, locking, memory, overlap, rigid_pairs, rules, thickness};
+use super::{examine, joints, locking, mass, memory, overlap, rigid_pairs, rules, thickness};
 use crate::geometry::Bounds;
 use crate::rigid::longest_step;
 use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
@@ -180,6 +180,7 @@ fn warnings(
         .chain(locking::bending(scene))
         .chain(loads::warning(scene, loads))
         .chain(thin_rigid_bodies(scene))
+        .chain(mass::warning(scene, extents))
         .chain(thickness::warning(scene))
         .chain(narrow_contacts(contacts))
         .collect()

@@ -14,13 +14,14 @@ const NEEDED: f64 = 3.0;
 /// Thicknesses nearer to the bound than this share are round-off and the last step to the surface.
 const TOLERANCE: f64 = 2e-3;
 
-/// Deformable bodies fewer than three cells thick.
+/// Deformable bodies fewer than three cells thick, and longer than they are thick.
 pub(super) fn warning(scene: &Scene) -> Option<Warning> {
     let cell = scene.discretization.cell;
     let thin: Vec<_> = (0..scene.bodies.len())
         .into_par_iter()
         .filter(|&body| !scene.bodies[body].is_rigid())
         .filter_map(|body| Some((body, thickness(scene, body, NEEDED * cell)?)))
+        .filter(|&(body, thickness)| is_long(scene, body, thickness))
         .collect();
     let (body, thickness) = *thin.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Warning::about(
@@ -36,6 +37,15 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
         ),
     ))
 }
+
+/// Whether a body is so much longer than it is thick that it can bend; grains do not.
+fn is_long(scene: &Scene, body: usize, thickness: f64) -> bool {
+    let bounds = scene.bodies[body].shape.bounds(scene.dimension.axes());
+    bounds.is_none_or(|bounds| bounds.size().into_iter().fold(0.0, f64::max) > LONG * thickness)
+}
+
+/// Thicknesses that a body that can bend is long, at least.
+const LONG: f64 = 2.0;
 
 /// How thick a body is where it is thickest [m], if that is less than `enough`: the shortest way through it at the
 /// particles furthest from its surface.
@@ -155,6 +165,8 @@ mod tests {
     fn a_ring_is_as_thick_as_its_wall() {
         let plane = Dimension::PlaneStrain;
         assert_eq!(said(plane, disk(0.2)), None);
+        // A grain of two cells has nothing to bend.
+        assert_eq!(said(plane, disk(0.1)), None);
         let ring = |inner| Shape::Difference(vec![disk(0.5), disk(inner)]);
         assert!(said(plane, ring(0.4)).expect("thin").contains("1.0 cells"));
         assert_eq!(said(plane, ring(0.15)), None);
