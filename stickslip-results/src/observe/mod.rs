@@ -80,7 +80,10 @@ pub use removed::RemovedRow;
 pub use results::Results;
 pub use schedule::Schedule;
 pub use sections::SectionRow;
-pub use shared::{PROGRAM, ParticlesThere, WantedStarts, begin_on_ranks, cell_of, counts, has_near, starts};
+pub use shared::{
+    Meeting, PROGRAM, ParticlesThere, WantedStarts, begin_on_ranks, cell_of, counts, has_near, meeting,
+    starts,
+};
 pub use state_sum::{present_state_sum, state_sum};
 pub use table::{CellValue, TableRow};
 pub use verify::{Verified, verify, verify_snapshot};

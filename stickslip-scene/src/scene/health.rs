@@ -40,8 +40,10 @@ pub enum HealthCheck {
     Leaving,
     /// Checkpoints that could not be written, or read.
     Checkpoint,
-    /// Probes that never had material around them.
+    /// Probes and sections that never had material around them, fronts and arrivals that never were.
     Probe,
+    /// Parts of one body that meet, and share nodes.
+    SelfContact,
 }
 
 /// What a run does where something is wrong.
@@ -81,7 +83,7 @@ pub struct Health {
 
 impl HealthCheck {
     /// Every check in the order in which a run looks.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Energy,
         Self::Noise,
         Self::Momentum,
@@ -99,6 +101,7 @@ impl HealthCheck {
         Self::Leaving,
         Self::Checkpoint,
         Self::Probe,
+        Self::SelfContact,
     ];
 
     /// Its name in records; scene files have `_` for `-`.
@@ -121,6 +124,7 @@ impl HealthCheck {
             Self::Leaving => "leaving",
             Self::Checkpoint => "checkpoint",
             Self::Probe => "probe",
+            Self::SelfContact => "self-contact",
         }
     }
 
@@ -148,7 +152,7 @@ impl HealthCheck {
             Self::AngularMomentum => Some(0.02),
             Self::Speed | Self::MaxStrain => Some(0.5),
             Self::Tearing | Self::FailedStep | Self::Contact => None,
-            Self::Relaxation | Self::Leaving | Self::Checkpoint | Self::Probe => None,
+            Self::Relaxation | Self::Leaving | Self::Checkpoint | Self::Probe | Self::SelfContact => None,
         }
     }
 }

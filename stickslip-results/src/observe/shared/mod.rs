@@ -2,9 +2,11 @@
 
 mod joint_file;
 mod light;
+mod meeting;
 mod question;
 
 pub(super) use light::{Look, bounds_on_ranks, light_on_ranks};
+pub use meeting::{Meeting, meeting};
 pub(super) use question::{Asked, Question, answer};
 pub use question::{WantedStarts, cell_of, counts, has_near, starts};
 

@@ -1,6 +1,7 @@
 //! What outputs ask of all particles, whoever has them.
 
 use super::Request;
+use super::meeting::Meetings;
 use crate::door::View;
 use crate::observe::arrivals::{Furthest, MassMean};
 use crate::observe::fronts::FrontQuestion;
@@ -37,6 +38,7 @@ pub(in crate::observe) enum Asked {
     Near(Near),
     Counts(Counts),
     Starts(Starts),
+    Meetings(Meetings),
 }
 
 impl Asked {
@@ -52,6 +54,7 @@ impl Asked {
             Asked::Near(question) => said(question, own, ranks),
             Asked::Counts(question) => said(question, own, ranks),
             Asked::Starts(question) => said(question, own, ranks),
+            Asked::Meetings(question) => said(question, own, ranks),
         }
     }
 }

@@ -55,8 +55,10 @@ table! {
         leaving: Option<Rule>,
         /// Checkpoints that could not be written, or could not be read where a run goes on from an earlier one.
         checkpoint: Option<Rule>,
-        /// Probes that never had material around them.
+        /// Probes and sections that never had material around them, fronts and arrivals that never were.
         probe: Option<Rule>,
+        /// Parts of one body that meet: they share nodes, are pushed a cell early, and stick.
+        self_contact: Option<Rule>,
         /// How often a step that fails is taken again from memory, with half of its length and half of that, before
         /// the run gives up: 0 to 20. Steps grow back after it. The particles are copied before each step.
         #[schemars(extend("default" = 0))]
@@ -120,6 +122,7 @@ impl Health {
             (HealthCheck::Leaving, &self.leaving),
             (HealthCheck::Checkpoint, &self.checkpoint),
             (HealthCheck::Probe, &self.probe),
+            (HealthCheck::SelfContact, &self.self_contact),
         ]
     }
 

@@ -10,6 +10,7 @@ mod neighbours;
 mod noise;
 mod precision;
 mod relaxation;
+mod self_contact;
 mod small_step;
 mod speed;
 mod spin;
@@ -26,7 +27,7 @@ use neighbours::Neighbours;
 
 /// Every check of a run that the scene does not ignore.
 fn checks(scene: &Scene) -> Vec<Box<dyn Check>> {
-    let all: [Box<dyn Check>; 13] = [
+    let all: [Box<dyn Check>; 14] = [
         Box::new(energy::EnergyCheck),
         Box::new(noise::NoiseCheck::default()),
         Box::new(momentum::MomentumCheck::default()),
@@ -40,6 +41,7 @@ fn checks(scene: &Scene) -> Vec<Box<dyn Check>> {
         Box::new(precision::PrecisionCheck::default()),
         Box::new(relaxation::RelaxationCheck),
         Box::new(leaving::LeavingCheck::default()),
+        Box::new(self_contact::SelfContactCheck::default()),
     ];
     all.into_iter().filter(|check| scene.health.response(check.kind()) != Response::Ignore).collect()
 }
