@@ -97,6 +97,7 @@ mod tests {
             normal: None,
             gap: 0.0,
             area: 0.0,
+            recovery: 0.0,
             step: step(100.0),
         };
         let change = pair.change([Vector([4.0, -8.0]), Vector::ZERO]);
@@ -123,6 +124,7 @@ mod tests {
                     normal,
                     gap: 0.0,
                     area: 0.0,
+                    recovery: 0.0,
                     step: step(100.0),
                 };
                 pair.change([Vector([4.0, -8.0]), Vector::ZERO])
@@ -146,6 +148,7 @@ mod tests {
             normal: None,
             gap: 0.0,
             area: 0.0,
+            recovery: 0.0,
             step: step(100.0),
         };
         let [on_free, on_wall] = pair.change([Vector([3.0, -8.0]), Vector::ZERO]).impulse;
@@ -158,7 +161,15 @@ mod tests {
         let free = surface(2.0, [0.0, -1.0]);
         let rigid = SurfaceEstimate { inverse_mass: 0.0, ..surface(1.0, [0.0, 1.0]) };
         for surfaces in [[&free, &rigid], [&rigid, &free]] {
-            let pair = Pair { rule: &rule, surfaces, normal: None, gap: 0.0, area: 0.0, step: step(100.0) };
+            let pair = Pair {
+                rule: &rule,
+                surfaces,
+                normal: None,
+                gap: 0.0,
+                area: 0.0,
+                recovery: 0.0,
+                step: step(100.0),
+            };
             let down = Vector([0.0, -8.0]);
             let velocities = surfaces.map(|side| if side.inverse_mass > 0.0 { down } else { Vector::ZERO });
             let [a, b] = pair.change(velocities).impulse;

@@ -74,6 +74,8 @@ pub struct Pair<'a, T, const D: usize> {
     pub gap: T,
     /// The node's share of the contact area [m^2], in the plane per depth [m].
     pub area: T,
+    /// The part of an overlap that the step takes away, of an interference fit that is being pressed; else 0 [-].
+    pub recovery: T,
     /// The step.
     pub step: TimeStep<T>,
 }
@@ -111,6 +113,11 @@ impl<T: Real, const D: usize> Pair<'_, T, D> {
         // that strains nothing.
         let strains = law.span() == Span::EachUse || self.step.purpose == ContactUse::Strain;
         if strains { self.scaled(change) } else { change }
+    }
+
+    /// Speed at which surfaces that have grown into each other part in this step; 0 of others [m/s].
+    pub fn growth_speed(&self) -> T {
+        (-self.gap).max(T::ZERO) * self.recovery * self.step.cell_speed()
     }
 
     /// m_1 m_2 / (m_1 + m_2) [kg]
@@ -180,7 +187,14 @@ pub(super) mod tests {
     }
 
     pub fn rule(law: ContactLaw, normal: Normal, friction: f64) -> Rule<f64> {
-        Rule { law, normal, friction: Friction::coulomb(friction), max_strain: 0.5, restitution: 0.0 }
+        Rule {
+            law,
+            normal,
+            friction: Friction::coulomb(friction),
+            max_strain: 0.5,
+            restitution: 0.0,
+            press: None,
+        }
     }
 
     /// The lighter body's velocity changes by 6 m/s; eqs. (20)-(22) allow the limit along an axis,
@@ -198,6 +212,7 @@ pub(super) mod tests {
                     normal,
                     gap: 0.0,
                     area: 0.0,
+                    recovery: 0.0,
                     step: step(limit),
                 };
                 let change = pair.change([Vector([0.0, -8.0]), Vector::ZERO]);

@@ -1,7 +1,8 @@
 //! Which rule holds for a pair of bodies, looked up without a table of all pairs.
 
-use super::Friction;
 use super::law::{Span, law};
+use super::{Friction, Growth};
+use crate::check::{Interference, interferences};
 use crate::scene::{ContactLaw, ContactRule, Normal, RuleNames, Scene};
 use crate::tensor::Real;
 
@@ -18,6 +19,8 @@ pub struct Rule<T> {
     pub max_strain: T,
     /// Coefficient of restitution between rigid bodies.
     pub restitution: f64,
+    /// How bodies that overlap at the start are pressed apart, if they are.
+    pub press: Option<Interference>,
 }
 
 impl<T: Real> From<&ContactRule> for Rule<T> {
@@ -28,6 +31,7 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
             friction: Friction::from(rule),
             max_strain: T::of(rule.max_strain),
             restitution: rule.restitution,
+            press: None,
         }
     }
 }
@@ -51,7 +55,10 @@ impl<T: Real> Rules<T> {
     /// The rules of a scene.
     pub fn new(scene: &Scene) -> Self {
         let default = ContactRule::default();
-        let rules = scene.contact.iter().chain([&default]).map(Rule::from).collect();
+        let mut rules: Vec<Rule<T>> = scene.contact.iter().chain([&default]).map(Rule::from).collect();
+        for (rule, press) in rules.iter_mut().zip(interferences(scene)) {
+            rule.press = press;
+        }
         Rules::named(RuleNames::new(scene), rules)
     }
 
@@ -94,6 +101,12 @@ impl<T: Real> Rules<T> {
     pub fn judge_by_place(&self) -> bool {
         let by_place = |rule: &Rule<T>| rule.law == ContactLaw::None || law::<T, 3>(rule.law).by_place();
         self.rules.iter().all(by_place)
+    }
+
+    /// Whether surfaces of an interference fit still grow at a time [s].
+    pub fn grow(&self, time: f64) -> bool {
+        let grows = |fit: &Interference| Growth::<T>::of(fit, time, 1.0).recovery > T::ZERO;
+        self.rules.iter().filter_map(|rule| rule.press.as_ref()).any(grows)
     }
 
     /// A rule by its number.

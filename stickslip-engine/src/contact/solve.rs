@@ -30,7 +30,8 @@ pub struct Impulse<T, const D: usize> {
     /// Whether a later use of the same step takes it back and judges the whole.
     pub span: Span,
     /// Work that a rigid body's prescribed motion did on the other [J]: the impulse times the mean of the velocities in
-    /// the step before and in this one, for forces are those of the moment between the two.
+    /// the step before and in this one, for forces are those of the moment between the two; and that of surfaces that
+    /// grow into each other.
     pub work: T,
 }
 
@@ -226,7 +227,7 @@ impl<T: Real, const D: usize> Solve<'_, T, D> {
                 let old = impulse.velocity;
                 let free = [0, 1].map(|i| velocities[places[i]] - old[i]);
                 impulse.change = pair.change(free);
-                impulse.work = T::ZERO;
+                impulse.work = pair.growth_speed() * -impulse.change.normal;
                 for i in 0..2 {
                     let surface = &pair.surfaces[i];
                     let new = impulse.change.impulse[i] * surface.inverse_mass;
@@ -430,9 +431,17 @@ mod tests {
                     rule: rules.len(),
                     facing: Facing { normal: normal.map_or(own, Vector).direction(), gap: 0.0 },
                     area: 1.0,
+                    recovery: 0.0,
                 });
                 let friction = Friction::coulomb(friction);
-                rules.push(Rule { law, normal: Normal::Common, friction, max_strain: 1.0, restitution: 0.0 });
+                rules.push(Rule {
+                    law,
+                    normal: Normal::Common,
+                    friction,
+                    max_strain: 1.0,
+                    restitution: 0.0,
+                    press: None,
+                });
             }
         }
         part.sites.push(SharedNode { node: [0; 3], sides: 0..n, encounters: 0..part.encounters.len() });
@@ -524,7 +533,7 @@ mod tests {
     #[test]
     fn the_harmless_share_is_continuous_and_work_of_walls_is_no_gain() {
         let facing = Facing { normal: None, gap: 0.0 };
-        let encounters = [Encounter { sides: [0, 1], rule: 0, facing, area: 1.0 }];
+        let encounters = [Encounter { sides: [0, 1], rule: 0, facing, area: 1.0, recovery: 0.0 }];
         let share = |impulse: f64, inverse_masses: [f64; 2], before: [f64; 2]| {
             let impulse = [-impulse, impulse].map(|j| Vector([j]));
             let velocity = [0, 1].map(|i| impulse[i] * inverse_masses[i]);

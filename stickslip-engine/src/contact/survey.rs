@@ -2,10 +2,11 @@
 
 use super::law::{NearParticle, law};
 use super::surroundings::{Chunk, MaterialSums, Wanted, behind};
-use super::{Pair, Rules, SurfaceEstimate, TimeStep};
+use super::{Growth, Pair, Rules, SurfaceEstimate, TimeStep};
 use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
+use crate::check::Interference;
 use crate::grid::{
     ActiveBlocks, Field, Lattice, Node, Nodes, SIDE, SharedBlock, next_of, node_at, nodes_per_block,
 };
@@ -73,6 +74,8 @@ pub struct Encounter<T, const D: usize> {
     pub(super) facing: Facing<T, D>,
     /// The node's share of the contact area [m^2], in the plane per depth [m].
     pub(super) area: T,
+    /// The part of an overlap that the step takes away, of an interference fit.
+    pub(super) recovery: T,
 }
 
 /// Sites of some blocks.
@@ -196,6 +199,8 @@ pub struct Near<'a, T, const D: usize> {
     pub rules: &'a Rules<T>,
     /// Step [s], if the nodes have the forces of the stress already.
     pub ahead: Option<T>,
+    /// Time at which the step begins [s].
+    pub time: f64,
     /// Nodes that a particle reaches along an axis, at most.
     pub width: usize,
     /// Who looks.
@@ -210,6 +215,11 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
 }
 
 impl<T: Laned, const D: usize> Near<'_, T, D> {
+    /// How far surfaces of an interference fit have grown when the step ends.
+    fn growth(&self, fit: &Interference) -> Growth<T> {
+        Growth::of(fit, self.time + self.ahead.map_or(0.0, T::f64), self.lattice.cell.f64())
+    }
+
     /// Surveys every node that two or more bodies share.
     pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
         let Survey { parts, count, scratches } = survey;
@@ -283,9 +293,13 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
                 if let (Some(a), Some(b)) = (places_here[a], places_here[b]) {
                     let pair = [a - first, b - first];
                     let look = LawInputs { near: self, sides: &part.sides[first..], pair, node, reach };
-                    let Some(facing) = law(self.rules.rule(rule).law).facing(&look, points) else { continue };
+                    let held = self.rules.rule(rule);
+                    let Some(mut facing) = law(held.law).facing(&look, points) else { continue };
                     let area = area(&look, &facing);
-                    part.encounters.push(Encounter { sides: [a, b], rule, facing, area });
+                    let growth = held.press.map_or(Growth::default(), |fit| self.growth(&fit));
+                    facing.gap += growth.allowed;
+                    let recovery = growth.recovery;
+                    part.encounters.push(Encounter { sides: [a, b], rule, facing, area, recovery });
                 }
             }
             if part.encounters.len() == start {
@@ -458,6 +472,7 @@ impl<T: Real, const D: usize> SurveyPart<T, D> {
             normal: encounter.facing.normal,
             gap: encounter.facing.gap,
             area: encounter.area,
+            recovery: encounter.recovery,
             step,
         }
     }

@@ -65,7 +65,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let balanced = self.state.relaxation.residual <= residual;
         let (time, dt) = (self.state.time, self.stable());
         let end = self.settings.time.end;
-        let still = self.settings.gravity.is_still(time, dt, end)
+        let still = !self.settings.rules.grow(time)
+            && self.settings.gravity.is_still(time, dt, end)
             && self.settings.loads.iter().all(|load| load.is_still(time, dt, end));
         self.state.relaxation.at_rest = balanced && still && !motions.any(driven) && {
             let [kinetic, strain] = self.energies();

@@ -316,6 +316,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             boundary: &self.workspace.boundary,
             rules: &self.settings.rules,
             ahead,
+            time: self.state.time,
             width: B::WIDTH,
             processor: match self.settings.path {
                 ParticleLoop::Lanes(processor) => processor,

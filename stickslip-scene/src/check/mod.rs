@@ -19,6 +19,7 @@ mod overlap;
 mod penetration;
 mod periodic;
 mod precision;
+mod press_fit;
 mod report;
 mod rigid_pairs;
 mod rules;
@@ -35,6 +36,7 @@ pub use contact::{ContactEstimate, ContactResolution};
 pub use hertz::{Hertz, HertzPatch};
 pub use loads::LoadReport;
 pub use memory::Footprint;
+pub use press_fit::{Interference, interferences};
 pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
 pub use rules::{RuleReport, pairs_without_friction};
 pub use warning::Warning;
@@ -65,6 +67,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     // Where bodies begin elsewhere, whoever lets them begin looks.
     if scene.start.is_none() {
         overlap::check(scene, &extents)?;
+        press_fit::check_press(scene)?;
     }
     precision::check(scene, &extents)?;
     joints::check(scene, &extents)?;

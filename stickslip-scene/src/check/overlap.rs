@@ -2,7 +2,7 @@
 
 use super::bodies::FillingExtent;
 use super::neighbours::pairs_within;
-use super::penetration::deepest;
+use super::penetration::{SharedRoom, deepest};
 use super::periodic::Images;
 use super::warning::Warning;
 use crate::geometry::{Bounds, SiteLattice};
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// A particle this share of the spacing inside a body is inside beyond round-off; touching bodies stay allowed.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Refuses particle sites that lie inside two bodies, but for those that a joint holds together.
+/// Refuses particle sites that lie inside two bodies, but for those that a joint holds together or that are pressed apart.
 ///
 /// Bodies that overlap by more than a lattice resolves share sites of it. If each has its own, the coarser one may see
 /// what lies between the sites of the finer one.
@@ -23,7 +23,8 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
     let pairs = pairs_within(&boxes, 0.0);
     let pairs_joined = scene.joined_pairs();
     let joined = |[a, b]: [usize; 2]| pairs_joined.contains(&[a, images.of[b]]);
-    let counts = |pair: [usize; 2]| images.counts(pair) && !joined(pair);
+    let pressed = |[a, b]: [usize; 2]| scene.contact_between(a, images.of[b]).press.is_some();
+    let counts = |pair: [usize; 2]| images.counts(pair) && !joined(pair) && !pressed(pair);
     match pairs.par_iter().find_map_first(|&pair| shared(&images, &boxes, pair).filter(|_| counts(pair))) {
         Some(problem) => Err(problem),
         None => Ok(()),
@@ -36,21 +37,24 @@ const TOUCH: f64 = 1e-6;
 /// So do those whose coordinates are given in seven digits, as those of many meshes are: a share of the coordinates.
 const SEVEN_DIGITS: f64 = 2e-7;
 
-/// Bodies that overlap by less than their particles see, from the distances to their exact surfaces; those of a pair
-/// that is glued or left alone may.
-pub(super) fn warning(scene: &Scene) -> Option<Warning> {
+/// Two bodies that overlap at the start, by the distances to their exact surfaces.
+pub(super) struct Overlap {
+    /// The second perhaps an image.
+    pub bodies: [usize; 2],
+    /// Of which body the second is, or is an image.
+    pub of: usize,
+    /// By which face of the domain, in words.
+    through: &'static str,
+    pub room: SharedRoom,
+}
+
+/// All pairs that overlap; those that are glued or left alone may.
+pub(super) fn overlaps(scene: &Scene) -> Vec<Overlap> {
     if scene.start.is_some() {
-        return None;
+        return Vec::new();
     }
     let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
-    let inside = scene.domain.as_ref().map_or(Bounds::EVERYTHING, |domain| {
-        let upper = |k: usize| match k < axes {
-            true if domain.is_periodic(k) => [f64::NEG_INFINITY, f64::INFINITY],
-            true => [domain.min[k], domain.max[k]],
-            false => [0.0; 2],
-        };
-        Bounds { min: std::array::from_fn(|k| upper(k)[0]), max: std::array::from_fn(|k| upper(k)[1]) }
-    });
+    let inside = inside(scene);
     let bounds = |body: &Body| body.shape.bounds(axes).unwrap_or(Bounds::EVERYTHING).intersected(&inside);
     let boxes: Vec<_> = scene.bodies.iter().map(bounds).collect();
     let images = Images::new(scene, &boxes);
@@ -68,27 +72,86 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
         let [of_a, of_b] = shapes.map(|shape| move |x| shape.level(x, axes));
         let shared = deepest([&of_a, &of_b], &room, cell, axes)?;
         let far = room.min.iter().chain(&room.max).fold(0.0_f64, |far, x| far.max(x.abs()));
-        (shared.depth > TOUCH * cell + SEVEN_DIGITS * far).then_some(([a, b], shared))
+        let (of, through) = (images.of[b], images.through(b));
+        (shared.depth > TOUCH * cell + SEVEN_DIGITS * far).then_some(Overlap {
+            bodies: [a, b],
+            of,
+            through,
+            room: shared,
+        })
     };
-    let found: Vec<_> = pairs_within(&boxes, 0.0).par_iter().filter_map(overlap).collect();
-    let ([a, b], deep) = *found.iter().max_by(|x, y| x.1.depth.total_cmp(&y.1.depth))?;
-    let [first, second] = [a, images.of[b]].map(|body| format!("`{}`", scene.bodies[body].name));
-    let place: Vec<_> = deep.place[..axes].iter().map(|x| format!("{x:.4}")).collect();
-    let others = match found.len() - 1 {
+    pairs_within(&boxes, 0.0).par_iter().filter_map(overlap).collect()
+}
+
+/// The domain, as far as it has faces that bound it.
+pub(super) fn inside(scene: &Scene) -> Bounds {
+    let axes = scene.dimension.axes();
+    scene.domain.as_ref().map_or(Bounds::EVERYTHING, |domain| {
+        let upper = |k: usize| match k < axes {
+            true if domain.is_periodic(k) => [f64::NEG_INFINITY, f64::INFINITY],
+            true => [domain.min[k], domain.max[k]],
+            false => [0.0; 2],
+        };
+        Bounds { min: std::array::from_fn(|k| upper(k)[0]), max: std::array::from_fn(|k| upper(k)[1]) }
+    })
+}
+
+/// Bodies that overlap and are not pressed apart, and rules that press where nothing overlaps.
+pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
+    let found = overlaps(scene);
+    let presses = |overlap: &&Overlap| {
+        let rule = scene.contact_between(overlap.bodies[0], overlap.of);
+        rule.press.is_some()
+    };
+    let idle = scene.contact.iter().enumerate().filter(|(number, rule)| {
+        let holds =
+            |overlap: &Overlap| scene.contact_rule_between(overlap.bodies[0], overlap.of) == Some(*number);
+        rule.press.is_some() && scene.start.is_none() && !found.iter().any(holds)
+    });
+    let idle = idle.map(|(number, _)| {
+        let why = "presses nothing: none of its bodies overlap at the start";
+        Warning::about(format!("contact[{number}].overlap"), why)
+    });
+    let mut all: Vec<Warning> = idle.collect();
+    if scene.start.is_some() && scene.contact.iter().any(|rule| rule.press.is_some()) {
+        let number = scene.contact.iter().position(|rule| rule.press.is_some()).unwrap_or(0);
+        let why = "does not act: the bodies begin as another run left them";
+        all.push(Warning::about(format!("contact[{number}].overlap"), why));
+    }
+    let kept: Vec<&Overlap> = found.iter().filter(|overlap| !presses(overlap)).collect();
+    let deepest = kept.iter().max_by(|x, y| x.room.depth.total_cmp(&y.room.depth));
+    all.extend(deepest.map(|deepest| kept_overlap(scene, deepest, kept.len() - 1)));
+    all
+}
+
+/// What becomes of an overlap that nothing presses apart.
+fn kept_overlap(scene: &Scene, overlap: &Overlap, others: usize) -> Warning {
+    let Overlap { bodies: [a, _], of, through, room } = overlap;
+    let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
+    let [first, second] = [*a, *of].map(|body| format!("`{}`", scene.bodies[body].name));
+    let place: Vec<_> = room.place[..axes].iter().map(|x| format!("{x:.4}")).collect();
+    let others = match others {
         0 => String::new(),
         more => format!(", and {more} more pair{} by less", if more == 1 { "" } else { "s" }),
     };
-    Some(Warning::about(
-        format!("bodies[{}].shape", images.of[b]),
+    let rigid = [*a, *of].iter().all(|&body| scene.bodies[body].is_rigid());
+    let becomes = match rigid {
+        true => "they part slowly, as their weight would let them fall by as much",
+        false => {
+            "contact keeps them from going deeper and does not press them apart: the overlap stays, without stress; \
+             overlap = \"press\" in their contact rule makes an interference fit of it"
+        }
+    };
+    Warning::about(
+        format!("bodies[{of}].shape"),
         format!(
-            "{second} overlaps {first} by {:.3e} m ({:.2e} cells) near ({}) m{}{others}: they start pressed together, \
-             with energy that nothing put in; move one of them, or cut one shape out of the other with a difference",
-            deep.depth,
-            deep.depth / cell,
+            "{second} overlaps {first} by {:.3e} m ({:.2e} cells) near ({}) m{through}{others}: {becomes}; else move one \
+             of them, or cut one shape out of the other with a difference",
+            room.depth,
+            room.depth / cell,
             place.join(", "),
-            images.through(b)
         ),
-    ))
+    )
 }
 
 /// The problem with a pair of bodies, if they share sites.
@@ -192,7 +255,7 @@ mod tests {
     fn warned(dimension: Dimension, bodies: Vec<Body>) -> Option<String> {
         let scene = scene(dimension, 0.1, bodies);
         assert_eq!(check(&scene, &measure(&scene).expect("filled")), Ok(()));
-        warning(&scene).map(|warning| warning.to_string())
+        warnings(&scene).pop().map(|warning| warning.to_string())
     }
 
     /// Too little for particles to see, down to a hundred-thousandth of a cell.

@@ -173,7 +173,7 @@ fn warnings(
     contacts: &[ContactEstimate],
 ) -> Vec<Warning> {
     (rules::idle(scene))
-        .chain(overlap::warning(scene))
+        .chain(overlap::warnings(scene))
         .chain(rigid_pairs::warning(scene, extents))
         .chain(joints::warning(scene))
         .chain(locking::warning(scene))

@@ -279,6 +279,7 @@ impl ContactRule {
             normal,
             max_strain: 0.5,
             restitution: 0.0,
+            press: None,
         }
     }
 

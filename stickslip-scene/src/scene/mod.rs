@@ -508,6 +508,16 @@ pub struct ContactRule {
     /// Coefficient of restitution between rigid bodies of which one is free: the speed at which they part over that at
     /// which they met, 0 to 1.
     pub restitution: f64,
+    /// How bodies that overlap at the start are pressed apart; `None`: they are not, and the overlap stays as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub press: Option<Press>,
+}
+
+/// An interference fit: surfaces grow from no overlap to all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Press {
+    /// Within which time [s]; `None`: ten times that in which a wave runs through the largest of the bodies.
+    pub time: Option<f64>,
 }
 
 /// When bodies that share a grid node push on each other.

@@ -41,6 +41,7 @@ mod plane_stress;
 mod plastic_flow;
 mod point_clouds;
 mod precision;
+mod press_fit;
 mod ranks;
 mod reactions;
 mod relaxation;

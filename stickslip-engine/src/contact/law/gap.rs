@@ -55,6 +55,7 @@ mod tests {
                     normal,
                     gap,
                     area: 0.0,
+                    recovery: 0.0,
                     step: step(100.0),
                 };
                 pair.change([Vector([0.0, -8.0]), Vector::ZERO]) != Change::NONE

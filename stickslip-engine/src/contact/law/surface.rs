@@ -63,10 +63,11 @@ impl<T: Real, const D: usize> PairLaw<T, D> for Surface {
         let m = pair.reduced_mass();
         let u = v - w;
         let friction = &pair.rule.friction;
-        // The speed that closes the gap in this step.
+        // The speed that closes the gap in this step, and that at which surfaces part that grow.
         let closing = pair.gap.max(T::ZERO) * pair.step.cell_speed();
+        let parting = pair.growth_speed();
         // What keeps the surfaces from crossing, or from parting; a bond does not draw them over a gap.
-        let normal = |u: Vector<T, D>| m * (u.dot(n) - u.dot(n).max(T::ZERO).min(closing));
+        let normal = |u: Vector<T, D>| m * (u.dot(n) - u.dot(n).max(T::ZERO).min(closing) + parting);
         let across = |u: Vector<T, D>| u - n * u.dot(n);
         match pair.step.purpose {
             ContactUse::VelocityChange => {
@@ -143,6 +144,7 @@ mod tests {
             normal: Some(Vector([0.0, -1.0])),
             gap,
             area: 1.0,
+            recovery: 0.0,
             step: TimeStep { duration: 1.0, cell: 1.0, purpose },
         };
         Surface.change(&pair, [Vector(velocity), Vector::ZERO]).impulse[0].0

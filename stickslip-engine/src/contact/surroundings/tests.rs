@@ -162,6 +162,7 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
             boundary: &boundary,
             rules: &rules,
             ahead: None,
+            time: 0.0,
             width: B::WIDTH,
             processor,
         };

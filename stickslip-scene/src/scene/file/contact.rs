@@ -1,12 +1,12 @@
 //! `[[contact]]`: rules for how bodies touch.
 
 use super::Context;
-use super::quantity::{Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity};
+use super::quantity::{Duration, Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity};
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
-use crate::scene::{Body, ContactLaw, ContactRule, NamedMaterial, Normal};
+use crate::scene::{Body, ContactLaw, ContactRule, NamedMaterial, Normal, Press};
 use schemars::JsonSchema;
 use std::collections::HashSet;
 
@@ -46,7 +46,31 @@ table! {
         /// Speed at which rigid bodies part over the speed at which they met, 0 to 1; where one of them is free.
         #[schemars(extend("default" = 0))]
         restitution: Option<QuantityInput<Ratio>>,
+        /// What becomes of an overlap with which bodies that deform start; "press" is of the law surface.
+        #[schemars(extend("default" = "kept"))]
+        overlap: Option<Word<OverlapUse>>,
+        /// Within which time surfaces grow by overlap = "press" [s]; by default ten times that in which a wave runs
+        /// through the largest of the bodies that overlap.
+        press_time: Option<QuantityInput<Duration>>,
     }
+}
+
+/// What becomes of an overlap at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OverlapUse {
+    Kept,
+    Press,
+}
+
+impl Choice for OverlapUse {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("kept", OverlapUse::Kept, "It stays, without stress; contact only keeps it from growing."),
+        (
+            "press",
+            OverlapUse::Press,
+            "An interference fit: surfaces grow from no overlap to all of it, and press the bodies apart.",
+        ),
+    ];
 }
 
 /// Two names.
@@ -160,7 +184,28 @@ impl Contact {
             restitution: self.restitution.as_ref().map_or(Ok(0.0), |restitution| {
                 restitution.checked(context, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
             })?,
+            press: self.press(law, context)?,
         })
+    }
+
+    /// How overlaps are pressed apart, if they are.
+    fn press(&self, law: ContactLaw, context: &Context) -> Result<Option<Press>, Fault> {
+        let wanted = self.overlap.as_ref().map_or(Ok(OverlapUse::Kept), |word| word.value(context))?;
+        let time = self.press_time.as_ref();
+        match (wanted, &self.overlap) {
+            (OverlapUse::Press, Some(word)) if law != ContactLaw::Surface => Err(word.refused(
+                context,
+                "\"press\" with law = \"surface\" only, which knows how deep bodies overlap",
+            )),
+            (OverlapUse::Press, _) => {
+                let time = time.map(|time| time.positive(context)).transpose()?;
+                Ok(Some(Press { time }))
+            }
+            (OverlapUse::Kept, _) => match time {
+                Some(time) => Err(time.node().fault("overlap = \"press\" beside it")),
+                None => Ok(None),
+            },
+        }
     }
 }
 
