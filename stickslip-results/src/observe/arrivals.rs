@@ -8,7 +8,7 @@ use super::probes::points;
 use super::schedule::Schedule;
 use super::shared::{Asked, Question, answer};
 use super::table::{CellValue, CsvTable, TableRow, columns};
-use super::{ARRIVALS, Observer};
+use super::{ARRIVALS, Doubt, Observer};
 use crate::door::View;
 use crate::exact::ExactSum;
 use crate::scene::{Anchor, Arrival, Observable, Reading, Scene};
@@ -153,6 +153,23 @@ impl Observer for ArrivalsObserver {
 
     fn conclude(&mut self) -> Result<(), OutputError> {
         self.table.finish()
+    }
+
+    fn doubts(&self) -> Vec<Doubt> {
+        let awaited = self.awaited.iter().flat_map(|awaited| &awaited.watches);
+        let awaited: Vec<(&str, f64)> =
+            awaited.map(|watch| (watch.quantity.name(), watch.row.threshold)).collect();
+        // Somewhere a threshold may well not be passed; where it is passed nowhere, nothing came of the table.
+        let all = &self.scene.outputs.measurements.arrivals;
+        let nowhere = all.iter().filter(|arrival| {
+            let places = arrival.probes.len() + arrival.bodies.len();
+            let waits = |other: &&(&str, f64)| **other == (arrival.quantity.name(), arrival.threshold);
+            awaited.iter().filter(waits).count() >= places
+        });
+        let named: Vec<String> =
+            nowhere.map(|arrival| format!("{} {}", arrival.quantity.name(), arrival.threshold)).collect();
+        let message = |named: &str| format!("nothing ever reached the threshold of the arrival {named}");
+        Doubt::of_all(&named.iter().collect::<Vec<_>>(), message, "it has no row: lower its `threshold`")
     }
 
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {

@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::schedule::Schedule;
 use super::shared::{Asked, Question, answer};
 use super::table::{CellValue, CsvTable, TableRow, columns};
-use super::{FRONT_SPEEDS, FRONTS, Observer};
+use super::{Doubt, FRONT_SPEEDS, FRONTS, Observer};
 use crate::door::{ParticleView, View};
 use crate::scene::{Front, Scene};
 use serde::{Deserialize, Serialize};
@@ -119,6 +119,13 @@ impl Observer for FrontsObserver {
         self.speeds.append(rows)?;
         self.speeds.finish()?;
         self.table.finish()
+    }
+
+    fn doubts(&self) -> Vec<Doubt> {
+        let never = self.tracks.iter().filter(|track| track.furthest.is_empty());
+        let names: Vec<&String> = never.map(|track| &track.front.name).collect();
+        let message = |named: &str| format!("nothing ever reached the threshold of the front {named}");
+        Doubt::of_all(&names, message, "it has no row: lower `threshold`, or widen `within`")
     }
 
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {

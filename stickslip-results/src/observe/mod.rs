@@ -117,6 +117,24 @@ const FRINGES: &str = "fringes";
 const FRINGES_TABLE: &str = "fringes.csv";
 const FRINGES_ANIMATION: &str = "fringes.png";
 
+/// What makes records doubtful.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// A sentence.
+    pub message: String,
+    /// What to try.
+    pub advice: &'static str,
+}
+
+impl Doubt {
+    /// Of all that have these names, the same: a sentence about the first, with how many more there are.
+    fn of_all(names: &[&String], message: impl Fn(&str) -> String, advice: &'static str) -> Vec<Doubt> {
+        let Some((first, others)) = names.split_first() else { return Vec::new() };
+        let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+        vec![Doubt { message: message(&format!("`{first}`{more}")), advice }]
+    }
+}
+
 /// One kind of output, or whatever else wants to look at a run.
 pub trait Observer {
     /// The time from which its next record is due [s]; 0 asks for every step.
@@ -137,8 +155,8 @@ pub trait Observer {
         Ok(())
     }
 
-    /// What makes its records doubtful, known after [`Observer::conclude`]: a sentence each.
-    fn doubts(&self) -> Vec<String> {
+    /// What makes its records doubtful, known after [`Observer::conclude`].
+    fn doubts(&self) -> Vec<Doubt> {
         Vec::new()
     }
 
@@ -171,7 +189,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
         (**self).conclude()
     }
 
-    fn doubts(&self) -> Vec<String> {
+    fn doubts(&self) -> Vec<Doubt> {
         (**self).doubts()
     }
 

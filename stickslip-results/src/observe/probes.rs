@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::points::{PointSample, Points, SamplePoint};
 use super::schedule::Schedule;
 use super::table::{CellValue, CsvTable, TableRow, columns};
-use super::{Observer, PROBES};
+use super::{Doubt, Observer, PROBES};
 use crate::door::View;
 use crate::scene::{Observable, Probe, Scene};
 use std::collections::BTreeSet;
@@ -129,9 +129,10 @@ impl Observer for ProbesObserver {
         self.table.finish()
     }
 
-    fn doubts(&self) -> Vec<String> {
-        let idle = self.names.iter().filter(|name| !self.seen.contains(*name));
-        idle.map(|name| format!("no material ever came to the probe `{name}`")).collect()
+    fn doubts(&self) -> Vec<Doubt> {
+        let idle: Vec<&String> = self.names.iter().filter(|name| !self.seen.contains(*name)).collect();
+        let message = |named: &str| format!("no material ever came to the probe {named}");
+        Doubt::of_all(&idle, message, "move it, or let a body carry it (`fixed_in`)")
     }
 
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {

@@ -21,7 +21,7 @@ use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::surfaces::SurfacesObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, ENERGY, FABRIC, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS,
+    ARRIVALS, BODIES, CONTACTS, Doubt, ENERGY, FABRIC, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS,
     Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
 };
 use crate::door::View;
@@ -176,7 +176,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// What makes records doubtful, once they are concluded: see [`Observer::doubts`].
-    pub fn doubts(&self) -> impl Iterator<Item = String> {
+    pub fn doubts(&self) -> impl Iterator<Item = Doubt> {
         self.scheduled.iter().flat_map(|output| output.observer.doubts())
     }
 

@@ -6,11 +6,12 @@ use super::memory::Memory;
 use super::schedule::Schedule;
 use super::shared::{Asked, Question, answer};
 use super::table::{CellValue, CsvTable, TableRow, columns};
-use super::{Observer, SECTIONS};
+use super::{Doubt, Observer, SECTIONS};
 use crate::door::{ParticleView, View};
 use crate::exact::ExactSum;
 use crate::scene::{Domain, Scene, Section};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use stickslip_scene::tensor::cross;
 
 /// Force and moment across a plane at one time, in SI units; the columns of `sections.csv`.
@@ -44,6 +45,8 @@ impl TableRow for SectionRow {
 /// Writes `sections.csv`.
 pub(super) struct SectionsObserver {
     sections: Vec<SectionCut>,
+    /// Names of those that material crossed at some time.
+    crossed: BTreeSet<String>,
     schedule: Schedule,
     table: CsvTable<SectionRow>,
 }
@@ -63,6 +66,7 @@ impl SectionsObserver {
         };
         Ok(SectionsObserver {
             sections: measurements.sections.iter().map(cut).collect(),
+            crossed: BTreeSet::new(),
             schedule: Schedule::every(scene.outputs.tables),
             table: CsvTable::create(folder, SECTIONS, measurements.unit())?,
         })
@@ -80,6 +84,9 @@ impl Observer for SectionsObserver {
             let sums = answer(view, cut);
             let [fx, fy, fz, mx, my, mz, area] = sums.each_ref().map(ExactSum::value);
             let section = cut.section.name.clone();
+            if area > 0.0 && !self.crossed.contains(&section) {
+                self.crossed.insert(section.clone());
+            }
             SectionRow { time, section, force: [fx, fy, fz], moment: [mx, my, mz], area }
         });
         self.table.append(rows)?;
@@ -91,7 +98,18 @@ impl Observer for SectionsObserver {
         self.table.finish()
     }
 
+    fn doubts(&self) -> Vec<Doubt> {
+        let names = self.sections.iter().map(|cut| &cut.section.name);
+        let idle: Vec<&String> = names.filter(|name| !self.crossed.contains(*name)).collect();
+        let message = |named: &str| format!("no material ever came to the section {named}");
+        Doubt::of_all(&idle, message, "its rows are 0: move its point, or widen `within`")
+    }
+
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
+        if !memory.keep("crossed", &mut self.crossed)? {
+            // Earlier versions did not keep it: nothing can be said.
+            self.crossed = self.sections.iter().map(|cut| cut.section.name.clone()).collect();
+        }
         self.schedule.remember(memory)?;
         self.table.remember(memory)
     }

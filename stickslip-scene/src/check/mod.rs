@@ -6,8 +6,10 @@
 mod accuracy;
 mod bodies;
 mod contact;
+mod dead_keys;
 mod flat;
 mod hertz;
+mod joint_freedom;
 mod joints;
 mod loads;
 mod locking;
@@ -71,6 +73,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     }
     precision::check(scene, &extents)?;
     joints::check(scene, &extents)?;
+    joint_freedom::check(scene, &extents)?;
     springs::check(scene)?;
     (0..scene.bodies.len()).try_for_each(|body| initial_stress::check(scene, body))?;
     Ok((extents, loads::check(scene)?))

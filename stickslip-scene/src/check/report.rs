@@ -7,7 +7,9 @@ use super::memory::Footprint;
 use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
-use super::{examine, joints, locking, mass, memory, overlap, rigid_pairs, rules, thickness};
+use super::{
+    dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, rigid_pairs, rules, thickness,
+};
 use crate::geometry::Bounds;
 use crate::rigid::longest_step;
 use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
@@ -159,9 +161,10 @@ impl Report {
         self
     }
 
-    /// The same with the places of warnings in the file that the scene came from.
+    /// The same with the places of warnings in the file that the scene came from, and with keys of it that do nothing.
     pub fn placed(mut self, source: &Source) -> Self {
-        self.warnings = self.warnings.into_iter().map(|warning| warning.placed(source)).collect();
+        let told = source.told().iter().map(|(key, why)| Warning::about(key.as_str(), why.as_str()));
+        self.warnings = told.chain(self.warnings).map(|warning| warning.placed(source)).collect();
         self
     }
 }
@@ -173,9 +176,11 @@ fn warnings(
     contacts: &[ContactEstimate],
 ) -> Vec<Warning> {
     (rules::idle(scene))
+        .chain(dead_keys::warnings(scene))
         .chain(overlap::warnings(scene))
         .chain(rigid_pairs::warning(scene, extents))
         .chain(joints::warning(scene))
+        .chain(joint_freedom::warning(scene, extents))
         .chain(locking::warning(scene))
         .chain(locking::bending(scene))
         .chain(loads::warning(scene, loads))

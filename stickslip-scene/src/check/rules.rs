@@ -115,7 +115,7 @@ impl BodyCount {
 }
 
 /// Rules, and how many bodies they mean.
-struct CountedRules<'a> {
+pub(super) struct CountedRules<'a> {
     scene: &'a Scene,
     names: RuleNames,
     /// Of each class of bodies.
@@ -123,7 +123,7 @@ struct CountedRules<'a> {
 }
 
 impl<'a> CountedRules<'a> {
-    fn new(scene: &'a Scene) -> Self {
+    pub(super) fn new(scene: &'a Scene) -> Self {
         let names = RuleNames::new(scene);
         let mut counts = vec![BodyCount::default(); names.classes()];
         for (i, body) in scene.bodies.iter().enumerate() {
@@ -135,6 +135,14 @@ impl<'a> CountedRules<'a> {
             }) += 1;
         }
         CountedRules { scene, names, counts }
+    }
+
+    /// Whether a rule matches pairs of rigid bodies of which one can be free, and no body that deforms.
+    pub(super) fn is_of_rigid_bodies(&self, rule: usize) -> bool {
+        let [first, second] = self.names.sides(rule);
+        let mut all = first.chain(second).map(|class| self.counts[class]);
+        let none_deforms = all.clone().all(|count| count.deforming == 0);
+        none_deforms && all.any(|count| count.free > 0)
     }
 
     /// Why a rule's restitution does not act, if it does not.

@@ -54,8 +54,10 @@ pub fn parse_beside(
     files: &dyn SceneFiles,
 ) -> Result<Loaded, SceneError> {
     let mut source = Source::read(name, text, overrides)?;
-    let (scene, declared) = file::resolve(&source, files).map_err(|fault| source.show(fault))?;
+    let file::Resolved { scene, declared, told } =
+        file::resolve(&source, files).map_err(|fault| source.show(fault))?;
     source.declare(declared);
+    source.tell(told);
     Ok(Loaded { scene, source })
 }
 

@@ -14,7 +14,11 @@ pub struct Source {
     documents: Vec<Document>,
     root: DocumentNode,
     declared: Declared,
+    told: Vec<Told>,
 }
+
+/// A key of the file that does nothing: its path, and why.
+pub(super) type Told = (String, String);
 
 /// Lists of the scene by their keys, and of each entry the table of the file that stands for it: one table may stand
 /// for many entries.
@@ -67,7 +71,8 @@ impl Source {
             span: 0..0,
             value: Value::Table(vec![]),
         };
-        let mut source = Source { documents: vec![document], root: empty, declared: Declared::new() };
+        let mut source =
+            Source { documents: vec![document], root: empty, declared: Declared::new(), told: Vec::new() };
         let table = DeTable::parse(text).map_err(|error| source.show(syntax_fault(text, &error)))?;
         source.root.value = table_value(table.get_ref(), "", 0);
         for (name, value) in overrides {
@@ -90,6 +95,16 @@ impl Source {
     /// Says which tables of the file stand for the entries of lists.
     pub(super) fn declare(&mut self, declared: Declared) {
         self.declared = declared;
+    }
+
+    /// Keeps which keys of the file do nothing.
+    pub(super) fn tell(&mut self, told: Vec<Told>) {
+        self.told = told;
+    }
+
+    /// Keys of the file that do nothing, each with the reason.
+    pub fn told(&self) -> &[(String, String)] {
+        &self.told
     }
 
     /// The key in the file of a key of the scene: of body 17, which a table stands for that is repeated, `bodies[2]`.

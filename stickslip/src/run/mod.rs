@@ -22,8 +22,8 @@ use crate::check::Warning;
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
-    BegunFrom, Checkpoint, CheckpointForm, Manifest, Memory, Observer, OutputError, OutputFolder, Patience,
-    Performance, Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
+    BegunFrom, Checkpoint, CheckpointForm, Doubt, Manifest, Memory, Observer, OutputError, OutputFolder,
+    Patience, Performance, Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
@@ -383,9 +383,6 @@ impl Kept {
     }
 }
 
-/// What to try where a probe has no rows.
-const MOVE_PROBE: &str = "move it, or let a body carry it (`fixed_in`)";
-
 /// A run under way.
 struct Watched<'a> {
     scene: &'a Scene,
@@ -493,10 +490,14 @@ impl Watched<'_> {
         let begun = Instant::now();
         recorder.record_present(*simulation)?;
         recorder.conclude()?;
-        for doubt in recorder.doubts() {
-            notes.extend(
-                kept.verdict.note_each((scene, *simulation), (HealthCheck::Probe, doubt, MOVE_PROBE)),
-            );
+        // Of a run that was broken off, nobody knows what would have come.
+        let finished = status == Status::Finished;
+        let doubts: Vec<Doubt> = recorder.doubts().filter(|_| finished).collect();
+        if let Some(first) = doubts.first() {
+            let said: Vec<String> =
+                doubts.iter().map(|Doubt { message, advice }| format!("{message}; {advice}")).collect();
+            let noted = (HealthCheck::Probe, said.join("; "), first.advice);
+            notes.extend(kept.verdict.note_each((scene, *simulation), noted));
         }
         kept.clock.count(Beside::Outputs, begun);
         let begun = Instant::now();

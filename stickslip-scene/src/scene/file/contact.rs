@@ -169,6 +169,11 @@ impl Contact {
             let allowed = format!("a number from 0 to the rule's friction, {friction}");
             if (0.0..=friction).contains(&value) { Ok(value) } else { Err(kinetic.refused(value, &allowed)) }
         })?;
+        if let Some(speed) = self.friction_decay_speed.as_ref().filter(|_| self.kinetic_friction.is_none()) {
+            let allowed = "a `kinetic_friction` beside it, to which friction falls over that speed";
+            return Err(speed.node().fault(allowed));
+        }
+        self.tell_of_dead_keys(law, context)?;
         Ok(ContactRule {
             between,
             law,
@@ -206,6 +211,40 @@ impl Contact {
                 None => Ok(None),
             },
         }
+    }
+
+    /// Tells of keys of a rule whose bodies are glued or left alone, where they do nothing.
+    fn tell_of_dead_keys(&self, law: ContactLaw, context: &Context) -> Result<(), Fault> {
+        let why = match law {
+            ContactLaw::None => "by the law \"none\" bodies do not touch",
+            ContactLaw::Glued => "bodies that are glued move as one",
+            _ => return Ok(()),
+        };
+        fn acts<M: Measure>(
+            key: &Option<QuantityInput<M>>,
+            context: &Context,
+        ) -> Result<Option<DocumentNode>, Fault> {
+            let Some(quantity) = key else { return Ok(None) };
+            Ok((quantity.extended(context)? != 0.0).then(|| quantity.node().clone()))
+        }
+        let dead = [
+            acts(&self.friction, context)?,
+            acts(&self.kinetic_friction, context)?,
+            acts(&self.friction_decay_speed, context)?,
+            acts(&self.cohesion, context)?,
+            acts(&self.adhesion, context)?,
+            acts(&self.viscosity, context)?,
+            acts(&self.restitution, context)?,
+            acts(&self.max_strain, context)?.filter(|_| law == ContactLaw::None),
+            self.normal.as_ref().map(|word| word.node().clone()),
+        ];
+        let dead: Vec<DocumentNode> = dead.into_iter().flatten().collect();
+        let Some((first, others)) = dead.split_first() else { return Ok(()) };
+        let others: Vec<String> = others.iter().map(|node| format!("`{}`", node.name)).collect();
+        let others =
+            if others.is_empty() { String::new() } else { format!(", nor do {}", others.join(", ")) };
+        context.tell(&first.key, format!("does not act{others}: {why}"));
+        Ok(())
     }
 }
 

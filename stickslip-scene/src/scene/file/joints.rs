@@ -305,6 +305,20 @@ fn limit_has_speed<M: Measure>(limit: &Option<QuantityInput<M>>, motor: &Motor) 
     }
 }
 
+/// The length of a spring without a force, if it is not that of the start; one of a dashpot alone does nothing.
+pub fn spring_length(
+    length: &Option<QuantityInput<Length>>,
+    stiffness: f64,
+    context: &Context,
+) -> Result<Option<f64>, Fault> {
+    match length {
+        Some(length) if stiffness == 0.0 => {
+            Err(length.node().fault("a `stiffness` beside it: a dashpot alone has no length"))
+        }
+        length => length.as_ref().map(|length| length.positive(context)).transpose(),
+    }
+}
+
 impl Spring {
     fn resolve(&self, declared: &str, context: &Context) -> Result<JointKind, Fault> {
         let points = [self.from.value(context)?, self.to.value(context)?];
@@ -319,7 +333,7 @@ impl Spring {
                 .node()
                 .fault("another place than `from`: a spring acts along the line between them"));
         }
-        let length = self.length.as_ref().map(|length| length.positive(context)).transpose()?;
+        let length = spring_length(&self.length, stiffness, context)?;
         Ok(JointKind::Spring { points, length, stiffness, dashpot })
     }
 }

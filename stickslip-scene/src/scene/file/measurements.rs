@@ -13,7 +13,7 @@ use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
-use crate::scene::{self, Anchor, Body, Observable, Reading};
+use crate::scene::{self, Anchor, Body, Dimension, Observable, Reading};
 use crate::tensor::Vector;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -277,6 +277,17 @@ fn time_unit(unit: &QuantityInput<Duration>, context: &Context) -> Result<scene:
     Ok(scene::TimeUnit { seconds, name })
 }
 
+/// A quantity that the scene has: in the plane those out of it are zero always.
+fn observed(word: &Word<Observable>, context: &Context) -> Result<Observable, Fault> {
+    let quantity = word.value(context)?;
+    let out_of_plane = matches!(quantity, Observable::Vz | Observable::Yz | Observable::Xz)
+        || quantity == Observable::Zz && context.dimension == Dimension::PlaneStress;
+    if context.dimension.is_plane() && out_of_plane {
+        return Err(word.refused(context, "a quantity that the plane has: this one is zero always"));
+    }
+    Ok(quantity)
+}
+
 const A_BODY: &str = "the name of a body that is not rigid";
 
 impl Probe {
@@ -325,7 +336,10 @@ impl Arrival {
         (probes, bodies): (&[&str], &[&str]),
         context: &Context,
     ) -> Result<scene::Arrival, Fault> {
-        let quantity = self.quantity.value(context)?;
+        let quantity = observed(&self.quantity, context)?;
+        if let Some(word) = self.reading.as_ref().filter(|_| self.bodies.is_none()) {
+            return Err(word.refused(context, "`bodies` beside it, for which it says what stands for them"));
+        }
         let at = match (&self.probes, &self.bodies) {
             (Some(list), _) => names_in(list, ("the name of a probe", probes), context)?,
             (None, Some(_)) => Vec::new(),
@@ -355,7 +369,7 @@ impl Front {
         (bodies, taken): (&[&str], &mut HashSet<String>),
         context: &Context,
     ) -> Result<scene::Front, Fault> {
-        let quantity = self.quantity.value(context)?;
+        let quantity = observed(&self.quantity, context)?;
         let direction = self.direction.value(context)?;
         let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
         if !(length > 0.0 && length.is_finite()) {

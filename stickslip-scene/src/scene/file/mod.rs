@@ -35,19 +35,21 @@ mod springs;
 mod start;
 mod text;
 mod time;
+mod unused;
 mod vector;
 
 pub use files::{Disk, SceneFiles};
 
 use super::error::Fault;
 use super::parameters::{Dependence, Parameters};
-use super::source::{Declared, DocumentNode, Source, Value};
+use super::source::{Declared, DocumentNode, Source, Told, Value};
 use super::{Damping, Dimension, Gravity, Scene};
 use named_shapes::NamedShapes;
 use quantity::Acceleration;
 use read::{Read, table};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::path::Path;
 use text::Text;
 
@@ -63,6 +65,27 @@ pub struct Context<'a> {
     pub folder: &'a Path,
     /// What reads those.
     pub files: &'a dyn SceneFiles,
+    /// Keys that turned out to do nothing.
+    told: &'a RefCell<Vec<Told>>,
+}
+
+impl Context<'_> {
+    /// Notes that a key does nothing, and why; once, however often its table is repeated.
+    pub fn tell(&self, key: &str, why: impl Into<String>) {
+        let mut told = self.told.borrow_mut();
+        if told.iter().all(|(known, _)| known != key) {
+            told.push((key.to_string(), why.into()));
+        }
+    }
+}
+
+/// What a file says.
+pub(super) struct Resolved {
+    pub scene: Scene,
+    /// Where in the file what it lists is declared.
+    pub declared: Declared,
+    /// Keys that do nothing.
+    pub told: Vec<Told>,
 }
 
 table! {
@@ -121,18 +144,19 @@ table! {
 /// Named parameters: [`Parameters`] reads them.
 pub struct ParameterTable(Vec<DocumentNode>);
 
-/// The scene that a source describes, and where in the file what it lists is declared.
+/// The scene that a source describes.
 ///
 /// # Errors
 /// The first mistake found.
-pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene, Declared), Fault> {
+pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<Resolved, Fault> {
     let file = File::read(source.root())?;
     let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
     let values = parameters.resolved()?;
     let folder = Path::new(source.name()).parent().unwrap_or(Path::new(""));
-    let shapes = NamedShapes::default();
+    let (shapes, told) = (NamedShapes::default(), RefCell::default());
+    let dimension = Dimension::Space;
     let mut context =
-        Context { parameters: &parameters, dimension: Dimension::Space, shapes: &shapes, folder, files };
+        Context { parameters: &parameters, dimension, shapes: &shapes, folder, files, told: &told };
     context.dimension = file.space.dimension.value(&context)?;
     let context = &context;
     file.shapes.map_or(Ok(()), |table| table.resolve(context))?;
@@ -208,7 +232,9 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<(Scene,
     if scene.time.relax.is_some() && !given {
         scene.outputs.tables = scene.rows_of_relaxation();
     }
-    Ok((scene, declared))
+    let mut told = told.take();
+    told.extend(unused::keys(source.root(), (&scene, &shapes)));
+    Ok(Resolved { scene, declared, told })
 }
 
 impl Read for ParameterTable {

@@ -10,6 +10,7 @@ use crate::scene::source::{DocumentNode, Value};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
+use std::collections::HashSet;
 
 /// How deep shapes that name others may go.
 const DEEPEST: usize = 16;
@@ -23,6 +24,8 @@ pub struct ShapeTable(Vec<(DocumentNode, ShapeInput)>);
 #[derive(Default)]
 pub struct NamedShapes {
     all: RefCell<Vec<NamedShape>>,
+    /// Names that something used.
+    used: RefCell<HashSet<String>>,
     /// What uses of names have taken so far [bytes], and how deep names go in the shape that is read.
     taken: Cell<usize>,
     depth: Cell<usize>,
@@ -56,6 +59,11 @@ impl ShapeTable {
 }
 
 impl NamedShapes {
+    /// Whether something used the shape of this name.
+    pub fn uses(&self, name: &str) -> bool {
+        self.used.borrow().contains(name)
+    }
+
     /// The shape with this name.
     pub fn named(&self, text: &Text, context: &Context) -> Result<Shape, Fault> {
         let all = self.all.borrow();
@@ -72,6 +80,7 @@ impl NamedShapes {
         }
         self.taken.set(taken);
         self.depth.set(self.depth.get().max(named.depth));
+        self.used.borrow_mut().insert(name);
         Ok(named.shape.clone())
     }
 }

@@ -176,7 +176,38 @@ pub fn resolve(
     }
     let (measurements, declared) = measurements::resolve(outputs, (bodies, end), context)?;
     resolved.measurements = measurements;
+    outputs.tell_of_dead_keys(&resolved, end, context);
     Ok((resolved, declared))
+}
+
+impl Outputs {
+    /// Tells of keys for files that there are none of, and of times after the end.
+    fn tell_of_dead_keys(&self, resolved: &scene::Outputs, end: f64, context: &Context) {
+        let late = |time: &&QuantityInput<Duration>| time.value(context).is_ok_and(|time| time > end);
+        let count = self.particles_at.iter().flatten().filter(late).count();
+        if let Some(time) = self.particles_at.iter().flatten().find(late) {
+            let times = if count == 1 { "this time is".to_string() } else { format!("{count} times are") };
+            let why = format!("{times} after the end of the run, {end} s: no snapshot comes of it");
+            context.tell(&time.node().key, why);
+        }
+        if let Some(first) = resolved.fringes.as_ref().map(|fringes| fringes.first).filter(|&at| at > end) {
+            let why = format!("the first frame, at {first} s, is after the end of the run, {end} s");
+            context.tell("outputs.fringes.first", why);
+        }
+        let snapshots = resolved.particles.is_some() || !resolved.particles_at.is_empty();
+        let files = snapshots || resolved.surfaces.is_some() || resolved.grid.is_some();
+        if self.snapshots.is_some() && !files {
+            let why = "does not act: the scene has no snapshots of particles, surfaces or the grid";
+            context.tell("outputs.snapshots", why);
+        }
+        if self.surface_format.is_some() && resolved.surfaces.is_none() {
+            context.tell("outputs.surface_format", "does not act: the scene has no outputs.surfaces");
+        }
+        let wanted = &resolved.measurements;
+        if self.samples.is_some() && wanted.probes.len() + wanted.arrivals.len() + wanted.fronts.len() == 0 {
+            context.tell("outputs.samples", "does not act: the scene has no probes, arrivals or fronts");
+        }
+    }
 }
 
 impl Snapshots {

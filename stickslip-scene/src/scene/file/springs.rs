@@ -1,6 +1,7 @@
 //! `[[springs]]`: springs and dashpots between parts of bodies.
 
 use super::Context;
+use super::joints::spring_length;
 use super::loads::positive;
 use super::quantity::{ForceOverVelocity, Length, QuantityInput, Stiffness};
 use super::read::table;
@@ -89,7 +90,7 @@ impl SpringBetween {
             let allowed = "a `stiffness`, a `dashpot` or both";
             return Err(Fault::new(declared, "a spring that does nothing", allowed));
         }
-        let length = self.length.as_ref().map(|length| length.positive(context)).transpose()?;
+        let length = spring_length(&self.length, stiffness, context)?;
         Ok(scene::Spring { name, ends, stiffness, dashpot, length })
     }
 }

@@ -1,0 +1,149 @@
+//! Keys of a scene that do nothing with the bodies that it has.
+
+use super::rules::CountedRules;
+use super::warning::Warning;
+use crate::scene::{
+    ContactLaw, ContactRule, Damping, Expression, HealthCheck, JointKind, Motor, Normal, Scene,
+};
+
+/// What a scene says and nothing comes of, a line for each kind.
+pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
+    (rigid_rules(scene).into_iter())
+        .chain(nothing_deforms(scene))
+        .chain(nothing_falls(scene))
+        .chain(overruled_drift(scene))
+        .chain(overruled_motor(scene))
+}
+
+/// Of rules between rigid bodies alone, keys that are about nodes: these bodies touch without a grid.
+fn rigid_rules(scene: &Scene) -> Vec<Warning> {
+    let rules = CountedRules::new(scene);
+    let told = |(rule, of): (usize, &ContactRule)| {
+        let usual = ContactRule::new(of.law);
+        let law = !matches!(of.law, ContactLaw::None | ContactLaw::Glued | ContactLaw::Surface);
+        let keys = [
+            ("law", law),
+            ("normal", of.normal == Normal::Own && !law),
+            ("max_strain", of.max_strain != usual.max_strain),
+            ("overlap", of.press.is_some()),
+        ];
+        let dead: Vec<&str> = keys.iter().filter(|(_, dead)| *dead).map(|(key, _)| *key).collect();
+        let (first, others) = dead.split_first().filter(|_| rules.is_of_rigid_bodies(rule))?;
+        let others: Vec<String> = others.iter().map(|key| format!("`{key}`")).collect();
+        let others =
+            if others.is_empty() { String::new() } else { format!(", nor do {}", others.join(", ")) };
+        let why = format!(
+            "does not act{others}: the rule matches rigid bodies only, which touch by their exact surfaces, without \
+             the grid"
+        );
+        Some(Warning::about(format!("contact[{rule}].{first}"), why))
+    };
+    scene.contact.iter().enumerate().filter_map(told).collect()
+}
+
+/// Damping and relaxation are of bodies that deform.
+fn nothing_deforms(scene: &Scene) -> Option<Warning> {
+    let damps = scene.damping != Damping::of(scene.time.relax);
+    let none = scene.bodies.iter().all(|body| body.is_rigid());
+    (damps && none).then(|| {
+        Warning::about("damping", "does not act: it is that of bodies that deform, and the scene has none")
+    })
+}
+
+/// Gravity acts on what is free.
+fn nothing_falls(scene: &Scene) -> Option<Warning> {
+    let falls = scene.gravity.strongest(scene.time.end) != [0.0; 3];
+    let none = scene.bodies.iter().all(|body| body.is_prescribed());
+    (falls && none).then(|| {
+        Warning::about("gravity", "does not act: all bodies move as prescribed, whatever pulls them")
+    })
+}
+
+/// `time.energy_drift` is the bound of checks that have none of their own.
+fn overruled_drift(scene: &Scene) -> Option<Warning> {
+    let own = |check| scene.health.rules.get(&check).is_some_and(|rule| rule.bound.is_some());
+    let given = scene.time.energy_drift != crate::scene::Time::until(1.0).energy_drift;
+    let overruled = given && own(HealthCheck::Energy) && own(HealthCheck::Noise);
+    overruled.then(|| {
+        let why = "does not act: health.energy and health.noise have bounds of their own";
+        Warning::about("time.energy_drift", why)
+    })
+}
+
+/// A motor that keeps up its speed whatever it takes leaves nothing to other forces.
+fn overruled_motor(scene: &Scene) -> Option<Warning> {
+    let overruled = |(number, joint): (usize, &crate::scene::Joint)| {
+        let (motor, push) = match &joint.kind {
+            JointKind::Hinge { motor, .. } => (motor, "torque"),
+            JointKind::Slider { motor, .. } => (motor, "force"),
+            _ => return None,
+        };
+        let key = first_key(motor, push).filter(|_| motor.speed.is_some() && motor.limit == f64::INFINITY)?;
+        Some(Warning::about(
+            format!("joints[{number}].{}.{key}", joint.kind.name()),
+            format!(
+                "does not act: the motor of `{}` keeps up its speed with as much as it takes; give it a `limit`",
+                joint.name
+            ),
+        ))
+    };
+    scene.joints.iter().enumerate().find_map(overruled)
+}
+
+/// The first key of a motor beside its speed that pushes.
+pub(super) fn first_key(motor: &Motor, push: &'static str) -> Option<&'static str> {
+    let pushes = motor.push != Expression::Constant(0.0);
+    let keys = [(push, pushes), ("stiffness", motor.stiffness > 0.0), ("dashpot", motor.dashpot > 0.0)];
+    keys.into_iter().find(|(_, acts)| *acts).map(|(key, _)| key)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::check::tests::report;
+
+    fn told(rest: &str) -> Vec<String> {
+        let text = format!(
+            "space = {{ dimension = 'plane-strain', cell = 0.1 }}\n\
+             materials.iron = {{ density = 1, neo_hookean = {{ young_modulus = 9, poisson_ratio = 0 }} }}\n\
+             bodies = [\n\
+             {{ name = 'a', material = 'iron', shape.ball = {{ center = [0, 0], radius = 1 }}, rigid.free = {{}} }},\n\
+             {{ name = 'b', material = 'iron', shape.ball = {{ center = [3, 0], radius = 1 }}, rigid = {{}} }} ]\n\
+             {rest}\n"
+        );
+        let text = if rest.contains("time.") { text } else { text + "time.end = 1\n" };
+        let scene =
+            crate::scene::parse("dead.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let warnings = report(&scene).expect("no problem").warnings;
+        warnings.iter().map(|warning| warning.to_string()).collect()
+    }
+
+    #[test]
+    fn what_acts_on_no_body_is_told_of() {
+        for (rest, said) in [
+            ("damping.viscous = 3", "damping: does not act: it is that of bodies that deform"),
+            (
+                "contact = [{ law = 'gap', max_strain = 0.2 }]",
+                "contact[0].law: does not act, nor do `max_strain`",
+            ),
+            (
+                "time = { end = 1, energy_drift = 0.2 }\nhealth = { energy.bound = 0.3, noise.bound = 0.1 }",
+                "time.energy_drift: does not act",
+            ),
+            (
+                "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3 } }]",
+                "joints[0].hinge.dashpot: does not act: the motor of `joint 1` keeps up",
+            ),
+        ] {
+            let found = told(rest);
+            assert!(found.len() == 1 && found[0].starts_with(said), "{rest}: {found:?}");
+        }
+        for rest in [
+            "contact = [{ friction = 0.3 }]",
+            "time = { end = 1, energy_drift = 0.2 }\nhealth.energy.bound = 0.3",
+            "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3, limit = 2 } }]",
+            "gravity = [0, -9.81]",
+        ] {
+            assert_eq!(told(rest), [""; 0], "{rest}");
+        }
+    }
+}
