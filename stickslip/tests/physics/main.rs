@@ -12,6 +12,7 @@ mod capstan;
 mod chain;
 mod colliding_disks;
 mod columns;
+mod contact_keys;
 mod custom_law;
 mod damping;
 mod empty_space;

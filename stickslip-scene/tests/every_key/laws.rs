@@ -1,0 +1,241 @@
+//! Keys of materials and of contact rules.
+
+use crate::{Cases, PLANE};
+
+const RULE: &str = "[{ law = 'surface' }]";
+
+pub const CASES: &[Cases] = &[
+    Cases {
+        scene: PLANE,
+        with: &[],
+        keys: &[
+            (
+                "materials",
+                "{ m = { density = 1, hypoelastic = { young_modulus = 1e6, poisson_ratio = 0.3 } } }",
+            ),
+            ("materials.m.density", "2000"),
+            ("materials.m.volume_change", "averaged"),
+            ("materials.m.thermal_expansion", "1e-5"),
+            ("materials.m.neo_hookean", "{ young_modulus = 2e6, poisson_ratio = 0.3 }"),
+            ("materials.m.neo_hookean.young_modulus", "2e6"),
+            ("materials.m.neo_hookean.poisson_ratio", "0.2"),
+            ("contact", "[{ friction = 0.3 }]"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, neo_hookean = { bulk_modulus = 1e6, shear_modulus = 1e6 } }",
+        )],
+        keys: &[
+            ("materials.m.neo_hookean.bulk_modulus", "2e6"),
+            ("materials.m.neo_hookean.shear_modulus", "2e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, neo_hookean = { p_wave_modulus = 1e6, poisson_ratio = 0.3 } }",
+        )],
+        keys: &[("materials.m.neo_hookean.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, hypoelastic = { bulk_modulus = 1e6, shear_modulus = 1e6 } }",
+        )],
+        keys: &[
+            ("materials.m.hypoelastic", "{ bulk_modulus = 3e6, shear_modulus = 1e6 }"),
+            ("materials.m.hypoelastic.bulk_modulus", "2e6"),
+            ("materials.m.hypoelastic.shear_modulus", "2e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, hypoelastic = { young_modulus = 1e6, poisson_ratio = 0.3 } }",
+        )],
+        keys: &[
+            ("materials.m.hypoelastic.young_modulus", "2e6"),
+            ("materials.m.hypoelastic.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, hypoelastic = { p_wave_modulus = 1e6, poisson_ratio = 0.3 } }",
+        )],
+        keys: &[("materials.m.hypoelastic.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, von_mises = { bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 1e3 } }",
+        )],
+        keys: &[
+            ("materials.m.von_mises", "{ bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 2e3 }"),
+            ("materials.m.von_mises.bulk_modulus", "2e6"),
+            ("materials.m.von_mises.shear_modulus", "2e6"),
+            ("materials.m.von_mises.yield_stress", "2e3"),
+            ("materials.m.von_mises.hardening_modulus", "1e3"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, von_mises = { young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 } }",
+        )],
+        keys: &[
+            ("materials.m.von_mises.young_modulus", "2e6"),
+            ("materials.m.von_mises.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, von_mises = { p_wave_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 } }",
+        )],
+        keys: &[("materials.m.von_mises.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, viscoelastic = { bulk_modulus = 1e6, shear_modulus = 1e6, prony = [[0.5, 1]] } }",
+        )],
+        keys: &[
+            ("materials.m.viscoelastic", "{ bulk_modulus = 3e6, shear_modulus = 1e6, prony = [[0.5, 1]] }"),
+            ("materials.m.viscoelastic.bulk_modulus", "2e6"),
+            ("materials.m.viscoelastic.shear_modulus", "2e6"),
+            ("materials.m.viscoelastic.prony", "[[0.4, 1]]"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, viscoelastic = { young_modulus = 1e6, poisson_ratio = 0.3, prony = [[0.5, 1]] } }",
+        )],
+        keys: &[
+            ("materials.m.viscoelastic.young_modulus", "2e6"),
+            ("materials.m.viscoelastic.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, viscoelastic = { p_wave_modulus = 1e6, poisson_ratio = 0.3, prony = [[0.5, 1]] } }",
+        )],
+        keys: &[("materials.m.viscoelastic.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, damage = { bulk_modulus = 1e9, shear_modulus = 1e9, tensile_strength = 1e6, \
+             fracture_energy = 100 } }",
+        )],
+        keys: &[
+            (
+                "materials.m.damage",
+                "{ bulk_modulus = 2e9, shear_modulus = 1e9, tensile_strength = 1e6, fracture_energy = 100 }",
+            ),
+            ("materials.m.damage.bulk_modulus", "2e9"),
+            ("materials.m.damage.shear_modulus", "2e9"),
+            ("materials.m.damage.tensile_strength", "2e6"),
+            ("materials.m.damage.fracture_energy", "200"),
+            ("materials.m.damage.strength_ratio", "8"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, damage = { young_modulus = 1e9, poisson_ratio = 0.3, tensile_strength = 1e6, \
+             fracture_energy = 100 } }",
+        )],
+        keys: &[("materials.m.damage.young_modulus", "2e9"), ("materials.m.damage.poisson_ratio", "0.2")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, damage = { p_wave_modulus = 1e9, poisson_ratio = 0.3, tensile_strength = 1e6, \
+             fracture_energy = 100 } }",
+        )],
+        keys: &[("materials.m.damage.p_wave_modulus", "2e9")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, outside = { law = 'l', bulk_modulus = 1e6, shear_modulus = 1e6 } }",
+        )],
+        keys: &[
+            ("materials.m.outside", "{ law = 'k', bulk_modulus = 1e6, shear_modulus = 1e6 }"),
+            ("materials.m.outside.law", "k"),
+            ("materials.m.outside.bulk_modulus", "2e6"),
+            ("materials.m.outside.shear_modulus", "2e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, outside = { law = 'l', young_modulus = 1e6, poisson_ratio = 0.3 } }",
+        )],
+        keys: &[("materials.m.outside.young_modulus", "2e6"), ("materials.m.outside.poisson_ratio", "0.2")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, outside = { law = 'l', p_wave_modulus = 1e6, poisson_ratio = 0.3 } }",
+        )],
+        keys: &[("materials.m.outside.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("contact", RULE)],
+        keys: &[
+            ("contact[0].between", "['a', 'b']"),
+            ("contact[0].law", "gap"),
+            ("contact[0].friction", "0.3"),
+            ("contact[0].cohesion", "1"),
+            ("contact[0].adhesion", "1"),
+            ("contact[0].viscosity", "1"),
+            ("contact[0].max_strain", "0.3"),
+            ("contact[0].restitution", "0.5"),
+            ("contact[0].overlap", "press"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("contact", RULE), ("contact[0].overlap", "press")],
+        keys: &[("contact[0].press_time", "1 ms")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("contact", RULE), ("contact[0].friction", "0.3")],
+        keys: &[("contact[0].kinetic_friction", "0.2")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("contact", RULE), ("contact[0].friction", "0.3"), ("contact[0].kinetic_friction", "0.2")],
+        keys: &[("contact[0].friction_decay_speed", "1")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("contact", RULE), ("contact[0].law", "kinematic")],
+        keys: &[("contact[0].normal", "common")],
+    },
+];
