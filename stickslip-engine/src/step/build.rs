@@ -276,7 +276,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 Ok(BodyHere {
                     name: body.name.clone(),
                     material: law.expect("it has been made"),
-                    density: T::of(scene.materials[body.material].density),
+                    density: T::of(begun.density),
                     expansion: T::of(scene.materials[body.material].thermal_expansion),
                     particles: begun.particles(&filled.kept, heated.contains(&number))?,
                     motion: begun.motion.map(Box::new),
