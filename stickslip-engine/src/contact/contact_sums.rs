@@ -19,6 +19,8 @@ pub struct RigidTouch {
     pub push: [f64; 3],
     /// Impulse on the first across the normal [N s].
     pub rub: [f64; 3],
+    /// That along the normal, positive where they push [N s].
+    pub normal: f64,
     /// Where [m].
     pub place: [f64; 3],
     /// Work of friction [J].
@@ -230,7 +232,7 @@ impl ContactSums {
 
     /// Adds what two rigid bodies did to each other at a point in a step of `duration` [s]; points have no area.
     pub fn touch(&mut self, touch: &RigidTouch, duration: f64) {
-        let RigidTouch { bodies, push, rub, place, friction, .. } = touch;
+        let RigidTouch { bodies, push, rub, normal, place, friction } = touch;
         let pair = self.place(*bodies);
         let sum = &mut self.pairs[pair].sum;
         if sum.last_use != self.uses {
@@ -241,7 +243,7 @@ impl ContactSums {
         let (push, rub) = (Vector(*push), Vector(*rub));
         let magnitude = (push + rub).norm();
         sum.magnitude += magnitude;
-        sum.normal += push.norm();
+        sum.normal += normal;
         sum.tangential = (Vector(sum.tangential) + rub).0;
         sum.impulse = (Vector(sum.impulse) - push - rub).0;
         sum.moment = (Vector(sum.moment) + Vector(*place) * magnitude).0;

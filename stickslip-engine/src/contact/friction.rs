@@ -54,6 +54,23 @@ impl<T: Real> Friction<T> {
         Friction { at_rest: coefficient, kinetic: coefficient, ..Friction::default() }
     }
 
+    /// The same in double precision.
+    pub fn double(&self) -> Friction<f64> {
+        Friction {
+            at_rest: self.at_rest.f64(),
+            kinetic: self.kinetic.f64(),
+            decay_speed: self.decay_speed.f64(),
+            cohesion: self.cohesion.f64(),
+            adhesion: self.adhesion.f64(),
+            viscosity: self.viscosity.f64(),
+        }
+    }
+
+    /// Whether surfaces that touch resist slip or parting by their area.
+    pub fn bonds(&self) -> bool {
+        [self.cohesion, self.adhesion, self.viscosity].iter().any(|x| *x > T::ZERO)
+    }
+
     /// mu(s) [-]
     pub fn coefficient(&self, slip: T) -> T {
         if self.at_rest == self.kinetic {

@@ -49,6 +49,7 @@ mod relaxation;
 mod resistance;
 mod retries;
 mod rigid_bodies;
+mod rigid_contact;
 mod sections;
 mod servo_walls;
 mod silo;

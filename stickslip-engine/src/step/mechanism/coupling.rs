@@ -5,7 +5,7 @@ use super::row::{JointRow, Row};
 use super::six::{self, Six, SixFactor, SixMatrix, at, join};
 use super::surfaces::RigidSurfaces;
 use super::sweeps::{packed, solve, tolerance as tolerance_of};
-use super::touch::{Touch, TouchForce};
+use super::touch::{Touch, TouchForce, least_slip};
 use super::{FreeBody, Mechanism, slot};
 use crate::body::Body;
 use crate::contact::{Impulses, Solve, Span};
@@ -52,11 +52,15 @@ struct BlockPush {
 
 /// Searches for contacts of rigid bodies at most, and how much faster than it was looked ahead for a body may become.
 const MAX_SEARCHES: usize = 3;
+/// How often in a step contacts may break loose at most: each may take others with it.
+const MAX_BREAKS: usize = 2;
 const FASTER: f64 = 1.5;
 /// Contacts of a packing are searched once more where a body would sink in by more than this part of its radius.
 const MISSED: f64 = 0.01;
 /// Rounds at most.
 const MAX_ROUNDS: usize = 60;
+/// From this round on one whose equations did not come to rest is the last.
+const MAX_UNHELD: usize = 5;
 /// From this round on a node in contact counts as one that sticks: velocities then come closer in each round.
 const SURE: usize = 12;
 /// Rounds end where velocities change by less than this part of themselves.
@@ -111,6 +115,13 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 motion.set_momenta(six::parts(free.target), dt);
             }
             settled = self.iterate(bodies, mechanism, &touched, listed);
+            // Those that break loose have less friction from then on.
+            for _ in 0..MAX_BREAKS {
+                if !self.judge_slip(bodies, mechanism) {
+                    break;
+                }
+                settled = self.iterate(bodies, mechanism, &touched, listed);
+            }
             // Joints and impacts may have made a body faster than it was looked ahead for.
             let outran = |(free, sought): (&FreeBody, &f64)| free.speed(bodies) > FASTER * sought;
             if mechanism.touches.is_empty() && self.surfaces.is_none()
@@ -150,7 +161,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let round_off = ROUND_OFF * f64::EPSILON * far.fold(0.0, f64::max) / dt;
         let placed = !(self.joints.is_empty() && mechanism.touches.is_empty());
         let tolerance = TOLERANCE.max(ROUND_OFF * T::EPSILON.f64());
-        let alone = packed(mechanism.touches.len()) && !touched.anywhere && mechanism.rows.is_empty();
+        let alone = !mechanism.touches.is_empty() && !touched.anywhere && mechanism.rows.is_empty();
         let mut first = 0.0;
         for round in 0..MAX_ROUNDS {
             self.move_nodes(bodies, (&mechanism.bodies, &touched.nodes));
@@ -165,7 +176,8 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             self.find_off(bodies, mechanism, dt);
             mechanism.rows.iter_mut().for_each(|held| held.row.respond(&factors));
             mechanism.touches.iter_mut().flat_map(Touch::rows_mut).for_each(|row| row.respond(&factors));
-            let held = solve(&mut mechanism.rows, &mut mechanism.touches, (&mut changes, D), round_off);
+            let held =
+                solve(&mut mechanism.rows, &mut mechanism.touches, (&mut changes, &nodes, D), round_off);
             let (mut moved, mut speed) = (0.0_f64, 0.0_f64);
             for (free, change) in mechanism.bodies.iter_mut().zip(&changes) {
                 let gained = free.inertia.times(change);
@@ -176,7 +188,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 speed = speed.max(free.speed(bodies)).max(free.size(&free.start)).max(free.pushed());
             }
             // Nothing but contacts of rigid bodies: another round would only sweep on, as the next step does.
-            if alone {
+            if alone || !held && round >= MAX_UNHELD {
                 return held;
             }
             if round == 0 && !mechanism.touches.is_empty() {
@@ -393,9 +405,15 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 (D, dt, mechanism.gravity),
             ));
         }
-        // Each force of the step before goes to the contact of its pair that is next to where it was.
         let Mechanism { touches, before, .. } = mechanism;
-        for TouchForce { bodies, place, force } in before.iter() {
+        for touch in touches.iter_mut() {
+            let first = before.partition_point(|force| force.bodies < touch.contact.bodies);
+            let of_pair = before[first..].iter().take_while(|force| force.bodies == touch.contact.bodies);
+            let far = |force: &&TouchForce| (Vector(force.place) - Vector(touch.contact.place)).norm();
+            touch.slipped(of_pair.min_by(|a, b| far(a).total_cmp(&far(b))).map(|force| force.slip));
+        }
+        // Each force of the step before goes to the contact of its pair that is next to where it was.
+        for TouchForce { bodies, place, force, .. } in before.iter() {
             let first = touches.partition_point(|touch| touch.contact.bodies < *bodies);
             let count = touches[first..].iter().take_while(|touch| touch.contact.bodies == *bodies).count();
             let far = |touch: &Touch| (Vector(touch.contact.place) - Vector(*place)).norm();
@@ -404,6 +422,25 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 touch.expect((Vector(*force) * dt).0);
             }
         }
+    }
+
+    /// Looks which contacts of rigid bodies slip; says whether any of them broke loose.
+    fn judge_slip(&self, bodies: &[Body<T, D>], mechanism: &mut Mechanism) -> bool {
+        let least = least_slip(&mechanism.touches);
+        let mut broke = false;
+        for touch in &mut mechanism.touches {
+            let motions =
+                touch.contact.bodies.map(|body| bodies[body].motion.as_deref().expect("it is rigid"));
+            let velocities = motions.map(|motion| join(motion.velocity(), motion.spin()));
+            let centers = touch.contact.centers(motions.map(|motion| motion.center));
+            let (relative, normal) = (
+                Vector(touch.contact.relative(velocities.each_ref(), centers)),
+                Vector(touch.contact.normal),
+            );
+            let slip = (relative - normal * relative.dot(normal)).norm();
+            broke |= touch.judge(slip, least);
+        }
+        broke
     }
 
     /// Gives the bodies exactly the momenta that contact and joints gave them.

@@ -12,10 +12,13 @@
 //! and Berendsen 1977). So contact with a light body is as stable as with a heavy one, momentum is exchanged to
 //! round-off, and joints do not drift.
 
+mod conjugate;
 mod coupling;
+mod direct;
 mod joint;
 mod row;
 mod six;
+mod sparse;
 mod surfaces;
 mod sweeps;
 mod touch;
@@ -274,15 +277,20 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let forces = mechanism.touches.iter().filter_map(|touch| touch.force(dt.f64()));
         self.state.touch_forces.extend(forces);
         let mut work = 0.0;
-        for touch in mechanism.touches.iter().filter(|touch| touch.normal.impulse > 0.0) {
+        for touch in mechanism.touches.iter().filter(|touch| touch.acts()) {
             let means = touch.contact.bodies.map(mean);
             let works =
                 |row: &Row| [0, 1].map(|side| row.impulse * six::dot(&row.directions[side], &means[side]));
             let lost = |row: &Row| -works(row).iter().sum::<f64>();
             let rubbed: f64 = touch.tangents.iter().map(lost).sum();
-            let impact = lost(&touch.normal);
-            self.state.damping += impact;
-            self.state.impacts += impact;
+            let parted = lost(&touch.normal);
+            if touch.normal.impulse > 0.0 {
+                self.state.damping += parted;
+                self.state.impacts += parted;
+            } else {
+                // Bonds that give way.
+                self.state.contact_sums.adhesion += parted;
+            }
             // What prescribed bodies put in.
             for row in touch.rows() {
                 let prescribed = (0..2).filter(|side| row.bodies[*side].is_none());

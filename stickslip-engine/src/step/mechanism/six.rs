@@ -30,6 +30,9 @@ pub fn add(a: &mut Six, factor: f64, b: &Six) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * b);
 }
 
+/// The least that is left of an entry of the diagonal.
+const LIGHTEST: f64 = 4.0 * f64::EPSILON;
+
 /// A symmetric positive definite matrix of six by six.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct SixMatrix([Six; 6]);
@@ -63,13 +66,23 @@ impl SixMatrix {
         std::array::from_fn(|i| dot(&self.0[i], x))
     }
 
-    /// Its Cholesky factor L, with A = L L^T.
+    /// What of it counts: all of it, or what there is of it in the plane.
+    pub fn part<const N: usize>(&self) -> [[f64; N]; N] {
+        let number = |k: usize| if N == 3 { [0, 1, 5][k] } else { k };
+        std::array::from_fn(|i| std::array::from_fn(|j| self.0[number(i)][number(j)]))
+    }
+
+    /// Its Cholesky factor L, with A = L L^T. What next to nothing follows is as light as round-off lets it be: a body of
+    /// a millionth of a millionth of the mass at its nodes has none across what touches it.
     pub fn factor(&self) -> SixFactor {
         let mut lower = [[0.0; 6]; 6];
         for i in 0..6 {
             for j in 0..=i {
                 let rest = self.0[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
-                lower[i][j] = if i == j { rest.sqrt() } else { rest / lower[j][j] };
+                lower[i][j] = match i == j {
+                    true => rest.max(LIGHTEST * self.0[i][i]).sqrt(),
+                    false => rest / lower[j][j],
+                };
             }
         }
         SixFactor(lower)

@@ -24,8 +24,13 @@ const MAX_STEPS: usize = 40;
 const FOUND: f64 = 1e-9;
 /// A point that is moved onto a surface is on it if it was no farther off than this, over the distance between points.
 const NEARLY_ON: f64 = 1e-5;
-/// Points of a surface that one thread looks at together: those near another body lie side by side.
-const PART: usize = 16;
+/// Points of a surface that one thread looks at together, and pairs of surfaces.
+const PART: usize = 256;
+const PAIRS: usize = 8;
+/// Distances are no farther off than this part of the way between two points allows.
+const SURELY: f64 = 0.5;
+/// Surfaces that resist by their area hold each other over a gap of this part of the distance between points.
+const BOND: f64 = 0.01;
 /// From this part of the way on that a point may take it would have gone on, if the slope is more than the second.
 const AT_END: f64 = 0.999;
 const LEVEL: f64 = 1e-6;
@@ -35,6 +40,8 @@ const LEVEL: f64 = 1e-6;
 struct RigidSurface {
     body: usize,
     points: Vec<[f64; 3]>,
+    /// The area of the piece that each stands for [m^2], in the plane its length [m].
+    areas: Vec<f64>,
     /// A ball around the body where it is at the start; without bounds the radius is infinite.
     center: [f64; 3],
     reach: f64,
@@ -82,6 +89,15 @@ pub struct RigidContact {
     pub normal: [f64; 3],
     /// Distance between the surfaces, negative where they overlap [m].
     pub gap: f64,
+    /// Its share of the area over which they touch, where that counts [m^2], in the plane per metre of depth [m].
+    pub area: f64,
+}
+
+/// Two surfaces that may touch.
+struct Near<'a, T, const D: usize> {
+    pair: [&'a PlacedSurface<'a, T, D>; 2],
+    /// Whether they resist by their area.
+    bonds: bool,
 }
 
 impl RigidSurfaces {
@@ -97,6 +113,7 @@ impl RigidSurfaces {
                 let unbounded = RigidSurface {
                     body: index,
                     points: Vec::new(),
+                    areas: Vec::new(),
                     center: [0.0; 3],
                     reach: f64::INFINITY,
                     spacing,
@@ -112,14 +129,15 @@ impl RigidSurfaces {
                 points = body.shape.surface(spacing, axes, &bounds);
             }
             let center: [f64; 3] = std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
-            let points: Vec<_> = points.into_iter().map(|point| point.position).collect();
+            let (points, areas): (Vec<_>, Vec<_>) =
+                points.into_iter().map(|point| (point.position, point.area)).unzip();
             let far = |point: &[f64; 3]| (Vector(*point) - Vector(center)).norm();
             let reach = points.iter().map(far).fold(0.0, f64::max) + spacing;
             let ball = match body.shape {
                 Shape::Ball { radius, .. } => Some(radius),
                 _ => None,
             };
-            RigidSurface { body: index, points, center, reach, spacing, ball }
+            RigidSurface { body: index, points, areas, center, reach, spacing, ball }
         };
         let rigid = scene.bodies.iter().enumerate().filter(|(_, body)| body.is_rigid());
         let joined = (scene.joints.iter().filter(|joint| joint.holds()))
@@ -151,22 +169,30 @@ impl RigidSurfaces {
             self.all.iter().map(|surface| PlacedSurface::new(surface, &bodies[surface.body], dt)).collect();
         // Along x, then by the balls around them.
         let order = self.along_x(&placed);
-        let (mut found, mut seen) = (Vec::new(), HashSet::new());
+        let (mut near, mut seen) = (Vec::new(), HashSet::new());
         for (rank, one) in order.iter().enumerate() {
             for other in order[rank + 1..].iter().take_while(|other| other.lower <= one.upper) {
                 let [i, j] = [one.rank.min(other.rank), one.rank.max(other.rank)];
                 let pair = [&placed[i], &placed[j]];
-                let [a, b] = pair.map(|placed| placed.surface.body);
                 let free = pair.iter().any(|placed| placed.motion.as_free().is_some());
-                let acts = || rules.rule(rules.number(a, b)).law != ContactLaw::None;
-                let near = i != j && free && may_touch(pair, self.nearest(pair));
+                if i == j || !free || !may_touch(pair, self.nearest(pair)) {
+                    continue;
+                }
+                let [a, b] = pair.map(|placed| placed.surface.body);
+                let rule = rules.rule(rules.number(a, b));
                 // Where there are images, a pair may be met twice.
                 let mut met = || self.periods[0] > 0.0 && !seen.insert([i, j]);
-                if near && !self.joined.contains(&[a, b]) && acts() && !met() {
-                    self.between_images(pair, &mut found);
+                if !self.joined.contains(&[a, b]) && rule.law != ContactLaw::None && !met() {
+                    near.push(Near { pair, bonds: rule.friction.bonds() });
                 }
             }
         }
+        let parts = by_parts(near.len(), PAIRS, |part| {
+            let mut found = Vec::new();
+            near[part].iter().for_each(|near| self.between_images(near, &mut found));
+            found
+        });
+        let mut found: Vec<RigidContact> = parts.into_iter().flatten().collect();
         // The sort is stable: contacts of a pair stay in the order in which they were found.
         found.sort_by_key(|contact| contact.bodies);
         found
@@ -210,14 +236,11 @@ impl RigidSurfaces {
 
     /// Contacts of the first body with all images of the second one that it may touch: where both end along an axis,
     /// these are on both sides, if they are long.
-    fn between_images<T: Real, const D: usize>(
-        &self,
-        [a, b]: [&PlacedSurface<T, D>; 2],
-        found: &mut Vec<RigidContact>,
-    ) {
+    fn between_images<T: Real, const D: usize>(&self, near: &Near<T, D>, found: &mut Vec<RigidContact>) {
         if self.periods == [0.0; 3] {
-            return self.between([a, b], found);
+            return self.between(near, found);
         }
+        let Near { pair: [a, b], bonds } = *near;
         let mut images = vec![self.nearest([a, b])];
         for axis in (0..D).filter(|&axis| self.periods[axis] > 0.0) {
             let ends = [a, b].iter().all(|one| one.reach.is_finite() && !one.body.whole.is_joined(axis));
@@ -234,19 +257,24 @@ impl RigidSurfaces {
         }
         for away in images.into_iter().filter(|away| may_touch([a, b], *away)) {
             match away {
-                [0.0, 0.0, 0.0] => self.between([a, b], found),
-                _ => self.between([a, &b.moved(away)], found),
+                [0.0, 0.0, 0.0] => self.between(near, found),
+                _ => self.between(&Near { pair: [a, &b.moved(away)], bonds }, found),
             }
         }
     }
 
     fn between<T: Send + Sync, const D: usize>(
         &self,
-        pair: [&PlacedSurface<T, D>; 2],
+        &Near { pair, bonds }: &Near<T, D>,
         found: &mut Vec<RigidContact>,
     ) {
         let [a, b] = pair;
-        let margin = margin(pair);
+        let bond = if bonds { BOND * a.surface.spacing.min(b.surface.spacing) } else { 0.0 };
+        let margin = margin(pair).max(bond);
+        // The area is that of the smaller body's surface: a face that lies in another one is found whole.
+        let counts = |one: &PlacedSurface<T, D>, other: &PlacedSurface<T, D>| {
+            bonds && (one.surface.reach, one.surface.body) < (other.surface.reach, other.surface.body)
+        };
         if let [Some(r), Some(s)] = pair.map(PlacedSurface::ball) {
             found.extend(between_balls(pair, [r, s]).into_iter().filter(|contact| contact.gap <= margin));
             return;
@@ -263,26 +291,49 @@ impl RigidSurfaces {
         for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             // Where the other one is as this one sees it, so that far points need no turning.
             let (seen, reach) = (one.pose.start(other.center), other.reach + margin + one.surface.spacing);
-            let touches = |&point: &[f64; 3]| {
+            let counts = counts(one, other);
+            let limit = margin + one.surface.spacing;
+            let touches = |number: usize, last: &mut ([f64; 3], f64)| {
+                let point = one.surface.points[number];
                 let off = Vector(point) - Vector(seen);
-                if off.dot(off) > reach * reach {
+                // What is near a point that is far away is far away.
+                let way = (Vector(point) - Vector(last.0)).norm();
+                if off.dot(off) > reach * reach || way < SURELY * last.1 {
                     return None;
                 }
                 let place = one.pose.now(point);
-                if other.level(place).distance > margin + one.surface.spacing {
+                let level = other.level(place);
+                *last = (point, level.distance - limit);
+                if level.distance > limit {
                     return None;
+                }
+                let faces = || Vector(one.level(place).gradient).dot(Vector(level.gradient)) < -FLAT;
+                if counts && level.distance.abs() <= bond && faces() {
+                    let normal = Vector(level.gradient).direction()?;
+                    let middle = (Vector(place) - normal * (0.5 * level.distance)).0;
+                    let (normal, area) = (normal.0.map(|n| sign * n), one.surface.areas[number]);
+                    let gap = level.distance;
+                    return Some(RigidContact { bodies, away: b.away, place: middle, normal, gap, area });
                 }
                 let (place, level) = one.nearest(place, other)?;
                 let normal = Vector(level.gradient).direction()?;
+                // At an edge, faces that lie side by side do not face each other.
+                let off = ALIKE * one.surface.spacing;
+                if one.level((place + normal * off).0).distance > 0.5 * off {
+                    return None;
+                }
                 // In the middle between the surfaces, where either body's points find the same place.
                 let place = (place - normal * (0.5 * level.distance)).0;
                 let normal = normal.0.map(|n| sign * n);
-                let contact = RigidContact { bodies, away: b.away, place, normal, gap: level.distance };
-                (level.distance <= margin).then_some(contact)
+                let gap = level.distance;
+                let contact = RigidContact { bodies, away: b.away, place, normal, gap, area: 0.0 };
+                (gap <= margin).then_some(contact)
             };
-            let points = &one.surface.points;
-            let parts =
-                by_parts(points.len(), PART, |part| points[part].iter().filter_map(touches).collect());
+            let count = one.surface.points.len();
+            let parts = by_parts(count, PART, |part| {
+                let mut last = ([0.0; 3], 0.0);
+                part.filter_map(|number| touches(number, &mut last)).collect()
+            });
             near.extend(parts.into_iter().flat_map(|part: Vec<_>| part));
         }
         let alike = ALIKE * a.surface.spacing.min(b.surface.spacing);
@@ -315,7 +366,7 @@ fn between_balls<T, const D: usize>(
     // A disk is as high as its centre of mass.
     let place = std::array::from_fn(|k| if k < D { middle[k] } else { b.motion.center[k] });
     let bodies = [a, b].map(|placed| placed.surface.body);
-    Some(RigidContact { bodies, away: b.away, place, normal: normal.0, gap })
+    Some(RigidContact { bodies, away: b.away, place, normal: normal.0, gap, area: 0.0 })
 }
 
 /// A part of x in which a surface, or an image of it, is.
@@ -434,27 +485,40 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
 }
 
 /// Keeps of contacts with one normal the nearest one and those at the rim, of what touches and of what may touch soon.
+/// Those at the rim of an area share it alike: so a bond bears its whole pull, and tips about an edge at half of that
+/// times the way to the other one, as a bond of the same strength everywhere does.
 fn reduce(mut near: Vec<RigidContact>, alike: f64, dimension: usize, kept: &mut Vec<RigidContact>) {
     while let Some(deepest) = near.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).copied() {
         let flat = |contact: &RigidContact| Vector(contact.normal).dot(Vector(deepest.normal)) > FLAT;
         let (group, rest): (Vec<_>, Vec<_>) = near.into_iter().partition(flat);
         near = rest;
+        let area: f64 = group.iter().map(|contact| contact.area).sum();
+        let of_area: Vec<_> = group.iter().filter(|contact| contact.area > 0.0).copied().collect();
         let (touching, apart): (Vec<_>, Vec<_>) =
             group.into_iter().partition(|contact| contact.gap <= deepest.gap.max(0.0) + alike);
-        let tangents = tangents(deepest.normal, dimension);
-        let mut chosen = vec![deepest];
-        for set in [&touching, &apart] {
-            for direction in around(&tangents) {
-                let far = |contact: &&RigidContact| Vector(contact.place).dot(Vector(direction));
-                let Some(extreme) = set.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
-                let same =
-                    |contact: &RigidContact| (Vector(contact.place) - Vector(extreme.place)).norm() <= alike;
-                if !chosen.iter().any(same) {
-                    chosen.push(*extreme);
-                }
-            }
-        }
+        let around = around(&tangents(deepest.normal, dimension));
+        let mut chosen = Vec::new();
+        take_rim(&of_area, &around, alike, &mut chosen);
+        let share = area / chosen.len().max(1) as f64;
+        chosen.iter_mut().for_each(|contact| contact.area = share);
+        let before = chosen.len();
+        take_rim(&[deepest], &around, alike, &mut chosen);
+        take_rim(&touching, &around, alike, &mut chosen);
+        take_rim(&apart, &around, alike, &mut chosen);
+        chosen[before..].iter_mut().for_each(|contact| contact.area = 0.0);
         kept.extend(chosen);
+    }
+}
+
+/// Takes those of a set of contacts that are farthest along each direction, unless one that is there lies by it.
+fn take_rim(set: &[RigidContact], around: &[[f64; 3]], alike: f64, chosen: &mut Vec<RigidContact>) {
+    for direction in around {
+        let far = |contact: &&RigidContact| Vector(contact.place).dot(Vector(*direction));
+        let Some(extreme) = set.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
+        let same = |contact: &RigidContact| (Vector(contact.place) - Vector(extreme.place)).norm() <= alike;
+        if !chosen.iter().any(same) {
+            chosen.push(*extreme);
+        }
     }
 }
 

@@ -1,19 +1,23 @@
 //! Sweeps over all equations of joints and contacts until they hold.
 
+use super::conjugate::Direction;
+use super::direct::{Answer, Direct, Term};
 use super::row::{JointRow, Row};
-use super::six::Six;
-use super::touch::Touch;
+use super::six::{Six, SixMatrix};
+use super::touch::{Grip, Touch};
+use std::ops::Range;
 
 /// An equation as sweeps see it: of the velocities of a body with those that count alone, three in the plane and six in
 /// space.
-struct Packed<const N: usize> {
+#[derive(Clone)]
+pub struct Packed<const N: usize> {
     /// Places of the free bodies; behind the last one stands all that no impulse moves.
-    bodies: [usize; 2],
-    directions: [[f64; N]; 2],
+    pub bodies: [usize; 2],
+    pub directions: [[f64; N]; 2],
     response: [[f64; N]; 2],
-    yields: f64,
+    pub yields: f64,
     off: f64,
-    impulse: f64,
+    pub impulse: f64,
 }
 
 /// What a body has of a vector of six: all of it, or what there is of it in the plane.
@@ -36,7 +40,7 @@ impl<const N: usize> Packed<N> {
 
     /// Adds what an impulse changes.
     #[inline(always)]
-    fn give(&self, impulse: f64, changes: &mut [[f64; N]]) {
+    pub fn give(&self, impulse: f64, changes: &mut [[f64; N]]) {
         for side in 0..2 {
             let change = &mut changes[self.bodies[side]];
             for (change, response) in change.iter_mut().zip(&self.response[side]) {
@@ -45,9 +49,9 @@ impl<const N: usize> Packed<N> {
         }
     }
 
-    /// The impulse that leaves no velocity along it, were it the only equation; so much yields count for one.
+    /// Velocity along it that is too much.
     #[inline(always)]
-    fn wanted(&self, changes: &[[f64; N]], yields: f64) -> f64 {
+    pub fn along(&self, changes: &[[f64; N]]) -> f64 {
         let mut along = self.off;
         for side in 0..2 {
             let change = &changes[self.bodies[side]];
@@ -55,7 +59,33 @@ impl<const N: usize> Packed<N> {
                 along += change * direction;
             }
         }
-        self.impulse - along / yields
+        along
+    }
+
+    /// The impulse that leaves no velocity along it, were it the only equation; so much yields count for one.
+    #[inline(always)]
+    pub fn wanted(&self, changes: &[[f64; N]], yields: f64) -> f64 {
+        self.impulse - self.along(changes) / yields
+    }
+}
+
+/// The contacts of a mechanism: their rows follow those of its joints, the normal and then the others.
+pub struct Contacts {
+    pub grips: Vec<Grip>,
+    /// Rows of each.
+    width: usize,
+}
+
+impl Contacts {
+    fn of(touches: &[Touch]) -> Self {
+        let width = touches.first().map_or(1, |touch| 1 + touch.tangents.len());
+        Contacts { grips: touches.iter().map(|touch| touch.grip).collect(), width }
+    }
+
+    /// The rows of a contact, behind so many of joints.
+    pub fn rows(&self, joints: usize, contact: usize) -> Range<usize> {
+        let first = joints + contact * self.width;
+        first..first + self.width
     }
 }
 
@@ -81,178 +111,287 @@ impl Sweep {
 
     /// The impulses of one contact, with all others as they are.
     #[inline(always)]
-    fn push<const N: usize>(&mut self, friction: f64, rows: &mut [Packed<N>], changes: &mut [[f64; N]]) {
+    fn push<const N: usize>(&mut self, grip: &Grip, rows: &mut [Packed<N>], changes: &mut [[f64; N]]) {
         let Some((normal, tangents)) = rows.split_first_mut() else { return };
-        let push = normal.wanted(changes, normal.yields).max(0.0);
+        let push = pushed(grip, (normal, normal.yields), changes)[1];
         self.set(normal, push, changes);
-        let strength = if push > 0.0 { friction * push } else { 0.0 };
-        let yields = tangents.iter().map(|row| row.yields).fold(0.0, f64::max);
+        let yields = softest(tangents);
         let open = self.packed && push == 0.0 && tangents.iter().all(|row| row.impulse == 0.0);
-        if friction == 0.0 || yields == 0.0 || open {
+        if grip.is_smooth() || yields == 0.0 || open && grip.cohesion == 0.0 && grip.drag == 0.0 {
             return;
         }
-        let mut wanted = [0.0; 2];
-        for (wanted, row) in wanted.iter_mut().zip(tangents.iter()) {
-            *wanted = row.wanted(changes, yields);
-        }
+        let wanted = wanted_across(tangents, changes, yields);
         let size = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt();
-        let scale = if size > strength { strength / size } else { 1.0 };
+        let borne = grip.borne(size, (push, yields));
+        let scale = if borne < size { borne / size } else { 1.0 };
         for (row, wanted) in tangents.iter_mut().zip(wanted) {
             self.set(row, scale * wanted, changes);
         }
     }
 }
 
-/// What sweeps are heading for: the direction of the nonsmooth nonlinear conjugate gradient method.
-///
-/// A sweep's change of the impulses is its steepest descent -g. With the direction p of the sweep before,
-///
-/// ```text
-/// b = |g|^2 / |g_before|^2,     l <- l + b p,   p <- b p - g         where b <= 1;  else p <- 0
-/// ```
-/// (Silcowitz, Niebe and Erleben 2010). The norm is that of energy, sum l^2 / m, and the velocities change with the
-/// impulses.
-struct Direction<const N: usize> {
-    impulses: Vec<f64>,
-    changes: Vec<[f64; N]>,
-    /// |g_before|^2 [J]; none before the first sweep.
-    square: Option<f64>,
+/// The normal impulse that lets surfaces part as they should, and that which they bear: a push, or what pull holds them.
+#[inline(always)]
+fn pushed<const N: usize>(
+    grip: &Grip,
+    (normal, yields): (&Packed<N>, f64),
+    changes: &[[f64; N]],
+) -> [f64; 2] {
+    let wanted = normal.wanted(changes, yields);
+    if wanted > 0.0 || grip.adhesion == 0.0 {
+        return [wanted, wanted.max(0.0)];
+    }
+    [wanted, (wanted - grip.way_in / yields).clamp(-grip.adhesion, 0.0)]
 }
 
-impl<const N: usize> Direction<N> {
-    fn new(rows: usize, bodies: usize) -> Self {
-        Direction { impulses: vec![0.0; rows], changes: vec![[0.0; N]; bodies], square: None }
-    }
+/// What the softest of rows yields.
+#[inline(always)]
+fn softest<const N: usize>(rows: &[Packed<N>]) -> f64 {
+    rows.iter().map(|row| row.yields).fold(0.0, f64::max)
+}
 
-    /// Goes on along it after a sweep that began with these impulses and changes.
-    fn follow(
-        &mut self,
-        (rows, changes): (&mut [Packed<N>], &mut [[f64; N]]),
-        (begun, begun_changes): (&[f64], &[[f64; N]]),
+#[inline(always)]
+fn wanted_across<const N: usize>(rows: &[Packed<N>], changes: &[[f64; N]], yields: f64) -> [f64; 2] {
+    let mut wanted = [0.0; 2];
+    for (wanted, row) in wanted.iter_mut().zip(rows) {
+        *wanted = row.wanted(changes, yields);
+    }
+    wanted
+}
+
+impl Contacts {
+    /// Impulses that contacts have with these velocities, by the law of sweeps where all yields so much more or less.
+    pub fn answer<const N: usize>(
+        &self,
+        (rows, velocities): (&[Packed<N>], &[[f64; N]]),
+        softness: f64,
+        answer: &mut Answer,
     ) {
-        let squares = rows.iter().zip(begun).map(|(row, begun)| (row.impulse - begun).powi(2) * row.yields);
-        let square = squares.sum::<f64>();
-        let share = self.square.map_or(0.0, |before| if before > 0.0 { square / before } else { 0.0 });
-        self.square = Some(square);
-        if share > 1.0 {
-            self.impulses.fill(0.0);
-            self.changes.fill([0.0; N]);
-            return;
-        }
-        for ((row, begun), along) in rows.iter_mut().zip(begun).zip(&mut self.impulses) {
-            let descent = row.impulse - begun;
-            row.impulse += share * *along;
-            *along = share * *along + descent;
-        }
-        for ((change, begun), along) in changes.iter_mut().zip(begun_changes).zip(&mut self.changes) {
-            for k in 0..N {
-                let descent = change[k] - begun[k];
-                change[k] += share * along[k];
-                along[k] = share * along[k] + descent;
+        let joints = rows.len() - self.grips.len() * self.width;
+        for (contact, grip) in self.grips.iter().enumerate() {
+            let Range { start: normal, end } = self.rows(joints, contact);
+            let (first, tangents) = (normal + 1, &rows[normal + 1..end]);
+            if rows[normal].yields <= 0.0 {
+                continue;
+            }
+            let soft = softness * rows[normal].yields;
+            let [wanted, push] = pushed(grip, (&rows[normal], soft), velocities);
+            let held = wanted > 0.0 || -grip.adhesion < push && push < 0.0;
+            answer.take(normal, push, if held { 1.0 / soft } else { 0.0 });
+            let yields = softness * softest(tangents);
+            if grip.is_smooth() || yields == 0.0 {
+                (first..end).for_each(|row| answer.take(row, 0.0, 0.0));
+                continue;
+            }
+            let wanted = wanted_across(tangents, velocities, yields);
+            let size = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt();
+            let borne = grip.borne(size, (push, yields));
+            if borne >= size {
+                (first..end).zip(wanted).for_each(|(row, wanted)| answer.take(row, wanted, 1.0 / yields));
+                continue;
+            }
+            let along = wanted.map(|wanted| wanted / size);
+            (first..end).zip(along).for_each(|(row, along)| answer.take(row, borne * along, 0.0));
+            let (none, last) = ((normal, 0.0), end - 1);
+            let share = |k: usize| if k < tangents.len() { along[k] } else { 0.0 };
+            let slip = [(first, share(0)), (last, share(1))];
+            // It slips by its push, by the slip where that is viscous, and turns.
+            let drag = grip.drag * yields;
+            if held && push > 0.0 && grip.friction.is_finite() {
+                let column =
+                    [slip[0], slip[1], none].map(|(row, share)| (row, share * grip.friction / (1.0 + drag)));
+                answer.terms.push(Term { weight: 1.0 / soft, column, row: [(normal, 1.0), none] });
+            }
+            if drag > 0.0 {
+                let weight = drag / (1.0 + drag) / yields;
+                answer.terms.push(Term { weight, column: [slip[0], slip[1], none], row: slip });
+            }
+            if tangents.len() > 1 {
+                let turn = [(first, -along[1]), (last, along[0])];
+                let weight = borne / size / yields;
+                answer.terms.push(Term { weight, column: [turn[0], turn[1], none], row: turn });
             }
         }
     }
 }
 
-/// Sweeps over all equations at most, and over those of a packing: its next step goes on with the impulses of this one.
-const MAX_SWEEPS: usize = 2000;
-const MAX_PACKED_SWEEPS: usize = 200;
+/// Sweeps over all equations at most, after all else; the next step goes on with the impulses of this one.
+const MAX_SWEEPS: usize = 200;
 /// They end where no impulse changes a velocity by more than this part of the largest change.
 const TOLERANCE: f64 = 1e-14;
 /// The same where rigid bodies touch: many points of a face share a load in many ways, between which sweeps go on for
-/// long.
-const TOUCHING: f64 = 1e-9;
-/// The same where they touch at more places than these. What is left over is small against what gravity does in a step,
-/// and the next step, which begins with these impulses, takes it up; momentum is exact whatever is left.
-const PACKED: f64 = 1e-5;
+/// long. Where they touch at more than a few places it is the second.
+const TOUCHING: [f64; 2] = [1e-9, 1e-6];
+/// The same at the end of all sweeps, where nothing else led there: what is left over is small against what gravity does
+/// in a step, and the next step takes it up; momentum is exact whatever is left.
+const AT_LAST: f64 = 1e-5;
+/// Sweeps that change this much more than the least go on from where they are, and along no direction.
+const STRAYED: f64 = 10.0;
 const FEW: usize = 100;
+/// Sweeps before the first direct step.
+const FIRST_SWEEPS: usize = 12;
+const FIRST_PACKED_SWEEPS: usize = 40;
+/// Rounds of direct steps at most, all together: so many, but of large systems no more than this many rows can pay.
+const MAX_ROUNDS: usize = 100;
+const FEWEST_ROUNDS: usize = 10;
+const ROWS_OF_ALL_ROUNDS: usize = 30_000;
+/// More rows than these are left to sweeps.
+const MOST_ROWS: usize = 10_000;
+/// A direct step may take so many products of blocks a row: then it costs as much as some ten sweeps.
+const AFFORDABLE: usize = 40;
 
 /// Whether so many contacts are those of a packing.
 pub fn packed(touches: usize) -> bool {
     touches > FEW
 }
 
-/// Where sweeps end that find the impulses of so many contacts.
+/// How closely the impulses of so many contacts are found.
 pub fn tolerance(touches: usize) -> f64 {
     match touches {
         0 => TOLERANCE,
-        1..=FEW => TOUCHING,
-        _ => PACKED,
+        _ => TOUCHING[usize::from(packed(touches))],
     }
 }
 
 /// Finds the impulses with which all equations hold, and adds what they change to the bodies' changes of velocity
-/// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998; of many contacts along conjugate
-/// directions from sweep to sweep); says whether they came to rest, down to velocities of `round_off`. In the plane,
-/// `dimension` 2, bodies move and turn in it.
+/// (projected Gauss-Seidel; friction on the disc of De Saxce and Feng 1998; after some sweeps all that holds at once, by
+/// [`Direct`], or where that would cost more than sweeps, along conjugate directions from sweep to sweep); says whether
+/// they came to rest, down to velocities of `round_off`. `inertia` is that of the bodies with what follows them at the
+/// nodes. In the plane, `dimension` 2, bodies move and turn in it.
 pub fn solve(
     held: &mut [JointRow],
     touches: &mut [Touch],
-    (changes, dimension): (&mut [Six], usize),
+    (changes, inertia, dimension): (&mut [Six], &[SixMatrix], usize),
     round_off: f64,
 ) -> bool {
     match dimension {
-        2 => sweep_until::<3>(held, touches, changes, round_off),
-        _ => sweep_until::<6>(held, touches, changes, round_off),
+        2 => sweep_until::<3>(held, touches, (changes, inertia), round_off),
+        _ => sweep_until::<6>(held, touches, (changes, inertia), round_off),
+    }
+}
+
+/// Impulses and changes of velocities on the way.
+#[derive(Clone)]
+struct Found<const N: usize> {
+    rows: Vec<Packed<N>>,
+    changes: Vec<[f64; N]>,
+}
+
+impl<const N: usize> Found<N> {
+    /// One sweep over the rows of joints and then of contacts.
+    fn sweep(&mut self, held: &[JointRow], contacts: &Contacts) -> Sweep {
+        let Found { rows, changes } = self;
+        let mut sweep = Sweep { packed: packed(contacts.grips.len()), ..Sweep::default() };
+        let (of_joints, of_touches) = rows.split_at_mut(held.len());
+        for (row, JointRow { limit, .. }) in of_joints.iter_mut().zip(held) {
+            if row.yields > 0.0 {
+                let wanted = row.wanted(changes, row.yields).clamp(-*limit, *limit);
+                sweep.set(row, wanted, changes);
+            }
+        }
+        for (own, grip) in of_touches.chunks_exact_mut(contacts.width).zip(&contacts.grips) {
+            if own[0].yields > 0.0 {
+                sweep.push(grip, own, changes);
+            }
+        }
+        sweep
     }
 }
 
 fn sweep_until<const N: usize>(
     held: &mut [JointRow],
     touches: &mut [Touch],
-    all: &mut [Six],
+    (all, inertia): (&mut [Six], &[SixMatrix]),
     round_off: f64,
 ) -> bool {
     let count = all.len();
-    let mut changes: Vec<[f64; N]> = all.iter().map(pack).chain([[0.0; N]]).collect();
-    let mut rows: Vec<Packed<N>> = (held.iter().map(|held| &held.row))
+    let changes: Vec<[f64; N]> = all.iter().map(pack).chain([[0.0; N]]).collect();
+    let rows: Vec<Packed<N>> = (held.iter().map(|held| &held.row))
         .chain(touches.iter().flat_map(Touch::rows))
         .map(|row| Packed::new(row, count))
         .collect();
-    rows.iter().for_each(|row| row.give(row.impulse, &mut changes));
-    let tolerance = tolerance(touches.len());
-    let packed = packed(touches.len());
-    let width = touches.first().map_or(1, |touch| 1 + touch.tangents.len());
-    let frictions: Vec<f64> = touches.iter().map(|touch| touch.friction).collect();
-    let most = if packed { MAX_PACKED_SWEEPS } else { MAX_SWEEPS };
-    let mut direction = Direction::new(rows.len(), changes.len());
-    let (mut begun, mut begun_changes) = (Vec::new(), Vec::new());
-    let mut rests = false;
-    for number in 1..=most {
-        if packed {
-            begun.clear();
-            begun.extend(rows.iter().map(|row| row.impulse));
-            begun_changes.clone_from(&changes);
-        }
-        let mut sweep = Sweep { packed, ..Sweep::default() };
-        let (of_joints, of_touches) = rows.split_at_mut(held.len());
-        for (row, JointRow { limit, .. }) in of_joints.iter_mut().zip(&*held) {
-            if row.yields > 0.0 {
-                let wanted = row.wanted(&changes, row.yields).clamp(-*limit, *limit);
-                sweep.set(row, wanted, &mut changes);
-            }
-        }
-        for (own, friction) in of_touches.chunks_exact_mut(width).zip(&frictions) {
-            if own[0].yields > 0.0 {
-                sweep.push(*friction, own, &mut changes);
-            }
-        }
-        rests = sweep.moved <= tolerance * sweep.largest + round_off;
-        if rests {
-            break;
-        }
-        // What the last sweep found holds all limits.
-        if packed && number < most {
-            direction.follow((&mut rows, &mut changes), (&begun, &begun_changes));
-        }
-    }
-    let impulses = rows.iter().map(|row| row.impulse);
+    let mut found = Found { rows, changes };
+    found.rows.iter().for_each(|row| row.give(row.impulse, &mut found.changes));
+    let contacts = Contacts::of(touches);
+    let rests = found.settle((held, &contacts), inertia, round_off);
+    let impulses = found.rows.iter().map(|row| row.impulse);
     let own = held.iter_mut().map(|held| &mut held.row).chain(touches.iter_mut().flat_map(Touch::rows_mut));
     own.zip(impulses).for_each(|(row, impulse)| row.impulse = impulse);
-    for (all, change) in all.iter_mut().zip(&changes) {
+    for (all, change) in all.iter_mut().zip(&found.changes) {
         for (k, change) in change.iter().enumerate() {
             all[if N == 3 { [0, 1, 5][k] } else { k }] = *change;
         }
     }
     rests
+}
+
+impl<const N: usize> Found<N> {
+    /// Solves until all comes to rest: by some sweeps, then all at once as long as that is worth it, and then by sweeps
+    /// again; says whether it did.
+    fn settle(
+        &mut self,
+        (held, contacts): (&[JointRow], &Contacts),
+        inertia: &[SixMatrix],
+        round_off: f64,
+    ) -> bool {
+        let touches = contacts.grips.len();
+        let first = if packed(touches) { FIRST_PACKED_SWEEPS } else { FIRST_SWEEPS };
+        let rounds = (ROWS_OF_ALL_ROUNDS / self.rows.len().max(1)).clamp(FEWEST_ROUNDS, MAX_ROUNDS);
+        let close = tolerance(touches);
+        let last = if touches > 0 { close.max(AT_LAST) } else { close };
+        let rests = |sweep: &Sweep, tolerance: f64| sweep.moved <= tolerance * sweep.largest + round_off;
+        if self.rows.len() > MOST_ROWS {
+            return self.sweep_along((held, contacts), MAX_SWEEPS, |sweep| rests(sweep, last));
+        }
+        if self.sweep_along((held, contacts), first, |sweep| rests(sweep, close)) {
+            return true;
+        }
+        let own = inertia.iter().map(SixMatrix::part).collect();
+        if let Some(mut direct) = Direct::new(&self.rows, own, (close, AFFORDABLE * self.rows.len())) {
+            let (mut best, mut least) = (self.clone(), f64::INFINITY);
+            while direct.rounds < rounds {
+                let before = self.clone();
+                if !direct.step((&mut self.rows, &mut self.changes), (held, contacts)) {
+                    *self = before;
+                }
+                let sweep = self.sweep(held, contacts);
+                if rests(&sweep, close) {
+                    return true;
+                }
+                if sweep.moved < least {
+                    (best, least) = (self.clone(), sweep.moved);
+                }
+            }
+            *self = best;
+        }
+        self.sweep_along((held, contacts), MAX_SWEEPS, |sweep| rests(sweep, last))
+    }
+
+    /// So many sweeps at most along conjugate directions; says whether they came to rest.
+    fn sweep_along(
+        &mut self,
+        (held, contacts): (&[JointRow], &Contacts),
+        most: usize,
+        rests: impl Fn(&Sweep) -> bool,
+    ) -> bool {
+        let mut direction = Direction::new(self.rows.len(), self.changes.len());
+        let (mut impulses, mut changes, mut least) = (Vec::new(), Vec::new(), f64::INFINITY);
+        for number in 1..=most {
+            impulses.clear();
+            impulses.extend(self.rows.iter().map(|row| row.impulse));
+            changes.clone_from(&self.changes);
+            let sweep = self.sweep(held, contacts);
+            if rests(&sweep) {
+                return true;
+            }
+            least = least.min(sweep.moved);
+            if sweep.moved > STRAYED * least {
+                direction.forget();
+            } else if number < most {
+                // What the last sweep found holds all limits.
+                direction.follow((&mut self.rows, &mut self.changes), (&impulses, &changes));
+            }
+        }
+        false
+    }
 }
