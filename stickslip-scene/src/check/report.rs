@@ -4,13 +4,14 @@ use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
 use super::loads::{self, LoadReport};
 use super::memory::Footprint;
+use super::neighbours::pairs_within;
 use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{
     dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, rigid_pairs, rules, thickness,
 };
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
 use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
 use crate::tensor::Vector;
@@ -50,6 +51,8 @@ pub struct Report {
     pub materials: Vec<MaterialReport>,
     /// Particles in all bodies, with those that bodies without bounds will have.
     pub particles: usize,
+    /// Places at which free rigid bodies touch others at the start, estimated.
+    pub rigid_contacts: usize,
     /// Memory of particles and grid, estimated [bytes].
     pub memory: f64,
     /// Memory beside it while a checkpoint is written: a copy of the particles, estimated [bytes].
@@ -129,6 +132,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
             .collect(),
         materials: of_materials(scene),
         particles: counts.iter().sum(),
+        rigid_contacts: rigid_contacts(scene, &boxes),
         memory: footprint.memory(scene, &counts),
         checkpoint_memory: footprint.copy(scene, &counts),
         end: scene.time.end,
@@ -149,8 +153,13 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
 impl Report {
     /// The same run on another machine.
     pub fn on(self, machine: MachineSpeed) -> Self {
-        let rate = machine.particle_steps_per_second * machine.cores as f64;
-        Report { machine, wall_time: self.particles as f64 * self.steps as f64 / rate, ..self }
+        let rate = machine.particle_steps_per_second;
+        // Contacts are solved for by one core.
+        let contacts = self.rigid_contacts as f64 * PARTICLES_A_CONTACT / rate;
+        let gridless = self.loads.is_empty() && self.bodies.iter().all(|body| body.rigid);
+        let particles = self.particles as f64 * if gridless { WITHOUT_GRID } else { 1.0 };
+        let a_step = contacts + particles / (rate * machine.cores as f64);
+        Report { machine, wall_time: a_step * self.steps as f64, ..self }
     }
 
     /// The same where so much memory is available [bytes]: with a warning if the run does not fit.
@@ -189,6 +198,49 @@ fn warnings(
         .chain(thickness::warning(scene))
         .chain(narrow_contacts(contacts))
         .collect()
+}
+
+/// A place where rigid bodies touch costs as much in a step as so many particles: half of it where they rest, and twice
+/// or more where they fall.
+const PARTICLES_A_CONTACT: f64 = 10.0;
+/// What a particle costs of that where nothing deforms, and a step makes no grid.
+const WITHOUT_GRID: f64 = 0.2;
+/// Places at which two bodies touch on a face, in the plane and in space.
+const PLACES: [usize; 2] = [3, 5];
+
+/// At how many places free rigid bodies touch others where they begin: balls at one.
+fn rigid_contacts(scene: &Scene, boxes: &[Bounds]) -> usize {
+    if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
+        return 0;
+    }
+    let joined = scene.joined_pairs();
+    let touches = |[a, b]: [usize; 2]| {
+        let both = [a, b].map(|body| &scene.bodies[body]);
+        let reach = both.map(|body| body.shape.bounds(scene.dimension.axes()).filter(Bounds::is_finite));
+        // What is endless is near to all: only its surface tells.
+        let near = || match reach {
+            [Some(_), Some(_)] => true,
+            [Some(bounds), None] => near_surface(scene, (b, &bounds)),
+            [None, Some(bounds)] => near_surface(scene, (a, &bounds)),
+            [None, None] => false,
+        };
+        both.iter().all(|body| body.is_rigid()) && scene.may_touch([a, b], &joined) && near()
+    };
+    let is_ball = |&body: &usize| matches!(scene.bodies[body].shape, Shape::Ball { .. });
+    let places =
+        |pair: [usize; 2]| if pair.iter().any(is_ball) { 1 } else { PLACES[scene.dimension.axes() - 2] };
+    let near = pairs_within(boxes, TOUCH * scene.discretization.cell);
+    near.into_iter().filter(|pair| touches(*pair)).map(places).sum()
+}
+
+/// Boxes that are less than this apart touch [cells].
+const TOUCH: f64 = 0.1;
+
+/// Whether a box reaches the surface of a body, by the point of the box that is nearest to it.
+fn near_surface(scene: &Scene, (body, bounds): (usize, &Bounds)) -> bool {
+    let (axes, shape) = (scene.dimension.axes(), &scene.bodies[body].shape);
+    let nearest = bounds.corners().map(|corner| shape.distance(corner, axes)).fold(f64::INFINITY, f64::min);
+    nearest < TOUCH * scene.discretization.cell
 }
 
 /// Particles along each side of a cell, in the bodies with the fewest and with the most.
@@ -328,6 +380,25 @@ mod tests {
         let report = report(&incline(4.0)).expect("no problem").on(machine);
         let exact = report.particles as f64 * report.steps as f64 / 4e6;
         assert!((report.wall_time / exact - 1.0).abs() < 1e-12);
+    }
+
+    /// Three boxes on each other on a floor touch at three places each; contacts are solved for by one core.
+    #[test]
+    fn contacts_of_rigid_bodies_count() {
+        let text = "space = { dimension = 'plane-strain', cell = 0.02 }\ngravity = [0, -9.81]\ntime.end = 1\n\
+             materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0 } }\n\
+             bodies = [{ name = 'floor', material = 'clay', rigid = {}, shape.half_space = { point = [0, 0], normal = [0, 1] } },\n\
+             { name = 'box {i}', repeat = { i = 3 }, material = 'clay', rigid.free = {}, \
+               shape.box = { min = [0, '0.1 * i'], max = [0.2, '0.1 * (i + 1)'] } }]\n";
+        let scene = crate::scene::parse("tower.toml", text, &[]).expect("a scene").scene;
+        let report = report(&scene).expect("no problem");
+        assert_eq!(report.rigid_contacts, 9);
+        let [one, eight] = [1, 8].map(|cores| {
+            let machine = MachineSpeed { particle_steps_per_second: 1e6, cores };
+            report.clone().on(machine).wall_time / report.steps as f64
+        });
+        assert!((one - (90.0 + 0.2 * report.particles as f64) / 1e6).abs() < 1e-12, "{one}");
+        assert!((eight - (90.0 + 0.025 * report.particles as f64) / 1e6).abs() < 1e-12, "{eight}");
     }
 
     #[test]

@@ -47,6 +47,13 @@ impl Display for Report {
             "wall time    {} (at {rate} million particle-steps/s a core, {cores} core{plural})",
             duration(self.wall_time)
         )?;
+        if self.rigid_contacts > 0 {
+            let contacts = self.rigid_contacts;
+            writeln!(
+                f,
+                "             with {contacts} contacts of rigid bodies: less where these rest, more where they fall"
+            )?;
+        }
         self.write_loads(f)?;
         self.write_rules(f)?;
         self.write_contacts(f)?;
