@@ -1,5 +1,6 @@
 //! Files that are whole at any time, and what can go wrong with them.
 
+use super::work::took;
 use crate::scene::escaped;
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
@@ -164,6 +165,7 @@ impl<W> SummedFile<W> {
 impl<W: Write> Write for SummedFile<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.inner.write(bytes)?;
+        took();
         self.crc.update(&bytes[..written]);
         self.bytes += written as u64;
         Ok(written)

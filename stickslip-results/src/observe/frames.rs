@@ -8,6 +8,7 @@ use super::file::{
 use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::vtk::{PointArrays, TIME, VtkFile};
+use super::work::work;
 use super::writer::Writer;
 use super::xml::attribute;
 use crate::scene::SeriesFormat;
@@ -111,7 +112,7 @@ impl Frames {
         encode: impl FnOnce(SeriesFormat) -> FrameFile + Send + 'static,
     ) {
         self.writer.hand_over(bytes, move |series| {
-            let file = encode(series.files.format);
+            let file = work(|| encode(series.files.format));
             series.push(time, &file)
         });
     }

@@ -6,6 +6,7 @@ use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::shared::{Look, bounds_on_ranks, light_on_ranks};
 use super::table::{CellValue, CsvTable, TableRow, columns};
+use super::work::work;
 use super::writer::Writer;
 use super::{FRINGES, FRINGES_ANIMATION, FRINGES_TABLE, Observer};
 use crate::door::{ContactCursor, ContactState, ParticleSnapshot, View};
@@ -235,10 +236,10 @@ impl FringeWriter {
     fn look(&mut self, particles: &ParticleSnapshot, exposure: Option<Exposure>) -> Result<(), OutputError> {
         self.window(|specimens| bounds(particles, specimens));
         let (Some(Photograph { bench, .. }), Some(exposure)) = (&self.view, exposure) else { return Ok(()) };
-        let light = match &self.hands {
+        let light = work(|| match &self.hands {
             Some(hands) => hands.install(|| bench.light(particles)),
             None => bench.light(particles),
-        };
+        });
         let links = links(particles, exposure.pushes.as_deref().unwrap_or_default(), &self.specimens);
         self.expose((&light, links), exposure)
     }

@@ -2,6 +2,7 @@
 
 use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
+use super::work::work;
 use crate::check::Warning;
 use crate::door::{RankShare, RelaxationState};
 use crate::scene::{Loaded, Scene, SceneError, load, parse};
@@ -408,7 +409,7 @@ impl Manifest {
     /// The disk is full or refuses; then the old record stays.
     pub fn write(&self, folder: &OutputFolder) -> Result<(), OutputError> {
         replace_for_good(&folder.join(Self::FILE), |file| {
-            let text = serde_json::to_string_pretty(self)?;
+            let text = work(|| serde_json::to_string_pretty(self))?;
             let text = text.strip_suffix("\n}").expect("a record has entries, each on a line of its own");
             writeln!(file, "{text}{SUM}{}\n}}", crc32fast::hash(text.as_bytes()))
         })

@@ -44,6 +44,7 @@ mod table;
 mod verify;
 mod vtk;
 mod waiting;
+mod work;
 mod writer;
 mod xml;
 

@@ -2,6 +2,7 @@
 
 use super::file::OutputError;
 use super::waiting::{LOOK_UP, Waiting};
+use super::work::Work;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,6 +27,9 @@ pub struct Writer<F> {
     /// The file or the folder that it writes.
     about: PathBuf,
     waiting: Arc<Waiting>,
+    /// What the thread is at, and how much of that is known.
+    work: Arc<Work>,
+    seen: u64,
 }
 
 /// Bytes of what was handed over, and how writing it went.
@@ -40,7 +44,10 @@ impl<F: Send + 'static> Writer<F> {
     pub fn start(mut files: F, about: &Path, waiting: &Arc<Waiting>) -> Result<Self, OutputError> {
         let (tasks, handed_over) = channel::<(usize, WriterTask<F>)>();
         let (report, done) = channel();
+        let work = Arc::new(Work::default());
+        let own = work.clone();
         let thread = Builder::new().name("writer".to_string()).spawn(move || {
+            own.adopt();
             for (bytes, task) in handed_over {
                 let result = task(&mut files);
                 let failed = result.is_err();
@@ -58,6 +65,8 @@ impl<F: Send + 'static> Writer<F> {
             thread: Some(thread.map_err(OutputError::at(about))?),
             about: about.to_path_buf(),
             waiting: waiting.clone(),
+            work,
+            seen: 0,
         })
     }
 
@@ -112,7 +121,7 @@ impl<F: Send + 'static> Writer<F> {
             match answered.recv_timeout(LOOK_UP) {
                 Ok(answer) => return Ok(answer),
                 Err(RecvTimeoutError::Timeout) => {
-                    if self.take_note()? {
+                    if self.take_note()? || self.work.goes_on(&mut self.seen) {
                         since = Instant::now();
                     }
                     self.look_up(since)?;
@@ -151,7 +160,7 @@ impl<F: Send + 'static> Writer<F> {
 impl<F> Writer<F> {
     /// Waits until one more task is done; `None` once there will be none.
     fn next_done(&mut self) -> Result<Option<()>, OutputError> {
-        let since = Instant::now();
+        let mut since = Instant::now();
         loop {
             match self.done.recv_timeout(LOOK_UP) {
                 Ok((bytes, result)) => {
@@ -159,7 +168,12 @@ impl<F> Writer<F> {
                     return result.map(Some);
                 }
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
-                Err(RecvTimeoutError::Timeout) => self.look_up(since)?,
+                Err(RecvTimeoutError::Timeout) => {
+                    if self.work.goes_on(&mut self.seen) {
+                        since = Instant::now();
+                    }
+                    self.look_up(since)?;
+                }
             }
         }
     }
@@ -199,6 +213,27 @@ mod tests {
     use std::time::Duration;
 
     type Log = Arc<Mutex<Vec<usize>>>;
+
+    /// A run that is to stop waits as long as its files are made, and no longer than it may for the disk.
+    #[test]
+    fn what_is_made_is_waited_for_and_a_disk_that_takes_nothing_is_not() {
+        let [short, long] = [30, 400].map(Duration::from_millis);
+        let patience = Patience { given_up_after: short, ..Patience::default() };
+        let stopped = Arc::new(Waiting::new(patience, Arc::new(true.into()), None));
+        let mut writer = Writer::start(Log::default(), Path::new("log"), &stopped).unwrap();
+        writer.hand_over(1, move |log| {
+            note(1)(crate::observe::work::work(|| {
+                std::thread::sleep(long);
+                log
+            }))
+        });
+        assert_eq!(writer.ask(|log| Ok(log.lock().unwrap().clone())).unwrap(), [1]);
+        writer.hand_over(1, move |_| {
+            std::thread::sleep(long);
+            Ok(())
+        });
+        assert_eq!(writer.finish().unwrap_err().source.kind(), io::ErrorKind::TimedOut);
+    }
 
     fn writer() -> (Writer<Log>, Log) {
         let log = Log::default();

@@ -24,6 +24,7 @@ use super::folder::OutputFolder;
 use super::manifest::SceneRecord;
 use super::memory::{Memory, Values};
 use super::shared::{self, ParticlesThere};
+use super::work::work;
 use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -146,15 +147,16 @@ impl Checkpoint {
         (sections, form): (Vec<Section>, CheckpointForm),
     ) -> io::Result<()> {
         let place = sections.last().map_or(START as u64, Section::end);
-        let head = Checkpoint {
-            program: self.program.clone(),
-            scene: self.scene.clone(),
-            state: self.state.without_particles(),
-            memory: self.memory.clone(),
-            sections,
-        };
-        let head = rmp_serde::to_vec_named(&head).map_err(io_error)?;
-        let (is_packed, head) = sections::packed(head, form);
+        let (is_packed, head) = work(|| {
+            let head = Checkpoint {
+                program: self.program.clone(),
+                scene: self.scene.clone(),
+                state: self.state.without_particles(),
+                memory: self.memory.clone(),
+                sections,
+            };
+            rmp_serde::to_vec_named(&head).map(|head| sections::packed(head, form)).map_err(io_error)
+        })?;
         let mut summed = Summed { file, sum: Sha256::new_with_prefix(first_line()) };
         summed.write_all(&head)?;
         summed.write_all(&[u8::from(is_packed)])?;

@@ -3,6 +3,7 @@
 use super::{CheckpointForm, MOST_COMPRESSED, START, Summed, damage, damaged};
 use crate::door::{SavedShare, SavedState};
 use crate::observe::file::ReadProblem;
+use crate::observe::work::work;
 use flate2::Compression;
 use flate2::bufread::ZlibDecoder;
 use flate2::write::ZlibEncoder;
@@ -61,9 +62,12 @@ impl Sections {
 impl Section {
     /// That of some particles, and its bytes.
     pub(in crate::observe) fn of(shares: &[SavedShare], form: CheckpointForm) -> (Self, Vec<u8>) {
-        let plain = rmp_serde::to_vec(shares).expect("memory takes what is written");
-        let (is_packed, bytes) = packed(plain, form);
-        let sum = Sha256::digest(&bytes).to_vec();
+        let (is_packed, bytes, sum) = work(|| {
+            let plain = rmp_serde::to_vec(shares).expect("memory takes what is written");
+            let (is_packed, bytes) = packed(plain, form);
+            let sum = Sha256::digest(&bytes).to_vec();
+            (is_packed, bytes, sum)
+        });
         (Section { place: 0, bytes: bytes.len() as u64, packed: is_packed, sum }, bytes)
     }
 
