@@ -78,6 +78,10 @@ impl StepSums {
     }
 }
 
+/// Part of what an impulse changes of the heavier node's velocity, that it must leave of the motion against it so that
+/// surfaces slip or part and do not stick.
+const LEFT_OVER: f64 = 1e-3;
+
 /// How often a step interpolates velocities: after the second time u^1 is at the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolated {
@@ -174,7 +178,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// ```
     /// This is exact for FLIP, where particles take changes at nodes: sum_p m_p v_p . sum_i S_i dv_i = sum_i m_i dv_i .
     /// v_i, with v_i interpolated from the v_p. The velocity of a node with next to no mass is mostly what forces do to
-    /// it within the step, and says little of how particles move.
+    /// it within the step, and says little of how particles move. Surfaces that stick rub nothing: what u^0 and u^1 of
+    /// light nodes differ by then is no slip, and is booked neither as friction nor as that of a bond that gives way.
     fn book_contact(&mut self, dt: T, twice: bool) {
         let start = Instant::now();
         let [mut one, mut two, mut three] = std::mem::take(&mut self.workspace.touches);
@@ -183,14 +188,24 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let node = &nodes[node];
             if twice { (node.start + node.velocity) * T::HALF } else { node.start }
         };
+        // Whether an impulse on the first body left some of the motion against it.
+        let yields = |impulse: &Impulse<T, D>, given: Vector<T, D>| {
+            let [a, b] = impulse.nodes.map(|node| &nodes[node]);
+            let left = -given.dot(a.integrated - b.integrated);
+            let heaviest = a.mass.max(b.mass);
+            let stopped = given.dot(given) / heaviest;
+            left > stopped * T::of(LEFT_OVER)
+        };
         let works = |impulse: &Impulse<T, D>| {
             let [a, b] = impulse.bodies;
             let rule = rules.rule(rules.number(a, b));
             let Change { impulse: [on_a, _], normal, tangential, .. } = impulse.change;
-            let rubs = tangential != Vector::ZERO && rule.law != ContactLaw::Glued;
+            let rubs =
+                rule.law != ContactLaw::Glued && tangential != Vector::ZERO && yields(impulse, tangential);
             // A bond that holds passes work on to the strain, as a push does; one that gives way takes it.
             let strength = rule.friction.adhesion * impulse.area * dt;
-            let pulls = strength > T::ZERO && normal >= strength * T::of(0.999);
+            let pulls =
+                strength > T::ZERO && normal >= strength * T::of(0.999) && yields(impulse, on_a - tangential);
             if !rubs && !pulls {
                 return [0.0; 2];
             }

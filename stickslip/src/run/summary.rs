@@ -1,7 +1,7 @@
 //! What a run came to, on one screen.
 
 use super::WidestContacts;
-use super::verdict::line;
+use super::verdict::{line, share};
 use crate::door::{Ledger, RelaxationState, View};
 use crate::observe::{BodyRow, Manifest, Performance, RunWarning, Status, TableRow};
 use crate::scene::Scene;
@@ -105,7 +105,7 @@ impl Summary {
 
     /// [`Summary::energy_drift`] over [`Summary::energy_scale`] [-].
     pub fn relative_energy_drift(&self) -> f64 {
-        if self.energy_scale > 0.0 { self.energy_drift() / self.energy_scale } else { 0.0 }
+        share(self.energy_drift(), self.energy_scale)
     }
 
     /// The warnings as lines of text: where many bodies have the same, one line with the worst of them.

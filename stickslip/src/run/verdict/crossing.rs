@@ -1,6 +1,6 @@
 //! Stressed particles that cross cells with linear functions, whose slopes jump there.
 
-use super::{Check, CheckInputs, Finding, place};
+use super::{Check, CheckInputs, Finding, exceeds, place};
 use crate::door::TracedParticle;
 use crate::scene::{BasisKind, HealthCheck, Scene};
 use crate::tensor::{Matrix, Symmetric};
@@ -33,6 +33,9 @@ fn crossing(look: &CheckInputs, body: usize) -> Option<Finding> {
     let size = look.scene.discretization.cell;
     let cell = |x: [f64; 3]| [0, 1, 2].map(|i| ((x[i] - origin[i]) / size).floor() as i64);
     let (start, now) = (&look.neighbours[body].start, &look.particles[body]);
+    if now.is_empty() {
+        return None;
+    }
     let crossed: Vec<&TracedParticle> = now
         .iter()
         .zip(start)
@@ -44,11 +47,7 @@ fn crossing(look: &CheckInputs, body: usize) -> Option<Finding> {
     let state = &look.bodies[body];
     let density = look.scene.materials[look.scene.bodies[body].material].density;
     let stress = (2.0 * state.strain * density / (state.mass * look.wave_modulus(body))).sqrt();
-    if share.is_nan()
-        || share <= look.bound(HealthCheck::CellCrossing)
-        || stress.is_nan()
-        || stress <= STRESSED
-    {
+    if !exceeds(share, look.bound(HealthCheck::CellCrossing)) || !exceeds(stress, STRESSED) {
         return None;
     }
     let most = crossed.into_iter().max_by(|a, b| strain(a).total_cmp(&strain(b)))?;

@@ -2,6 +2,7 @@
 
 use super::energy::EnergyBalance;
 use super::momentum::{MomentumBalance, Moving};
+use super::negligible::Negligible;
 use crate::door::View;
 use crate::observe::{Memory, OutputError};
 use crate::scene::{HealthCheck, Response, Scene};
@@ -48,15 +49,16 @@ impl StepCuttings {
     }
 
     /// Looks at what drifts now.
-    pub(super) fn look(&mut self, scene: &Scene, view: &dyn View) {
+    pub(super) fn look(&mut self, scene: &Scene, view: &dyn View, negligible: &Negligible) {
         let bound = |check| scene.health_bound(check);
         if let Some(cutting) = &mut self.energy {
-            cutting.balance.update(&view.ledger());
+            let ledger = view.ledger();
+            cutting.balance.update(&ledger, negligible.energy(view, &ledger));
             cutting.see(cutting.balance.relative().abs(), bound(HealthCheck::Energy));
         }
         if let Some(cutting) = &mut self.momentum {
             let (ledger, bodies) = (view.ledger(), view.bodies());
-            let moving = Moving { scene, view, ledger: &ledger, bodies: &bodies };
+            let moving = Moving { scene, view, ledger: &ledger, bodies: &bodies, negligible };
             let missing = cutting.balance.update(&moving).map_or(0.0, |missing| missing.share);
             cutting.see(missing, bound(HealthCheck::Momentum));
         }

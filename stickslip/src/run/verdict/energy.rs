@@ -1,12 +1,12 @@
 //! Energy that came from nowhere or went there.
 
-use super::{Check, CheckInputs, Finding, STEPS};
+use super::{Check, CheckInputs, Finding, STEPS, exceeds, share};
 use crate::door::Ledger;
 use crate::scene::{BasisKind, HealthCheck, Scene};
 use serde::{Deserialize, Serialize};
 
 /// The total of the ledger against its start, over the largest energy so far that moved, was stored, was set free by
-/// falling or turned to heat.
+/// falling or turned to heat, and what is too little to be judged ([`super::negligible`]).
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct EnergyBalance {
     first: Option<Ledger>,
@@ -17,24 +17,24 @@ pub(super) struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Takes note of how large energies are.
-    pub(super) fn weigh(&mut self, now: &Ledger) {
+    /// Takes note of how large energies are, which are held to be no less than `least` [J].
+    pub(super) fn weigh(&mut self, now: &Ledger, least: f64) {
         let first = self.first.get_or_insert_with(|| now.clone());
         let heat = now.friction + now.adhesion + now.plastic + now.damping;
         // The zero of the potential energy is arbitrary.
         let fallen = (now.potential - first.potential).abs();
-        self.scale = self.scale.max(now.kinetic + now.strain).max(heat).max(fallen);
+        self.scale = self.scale.max(now.kinetic + now.strain).max(heat).max(fallen).max(least);
     }
 
     /// The drift now.
-    pub(super) fn update(&mut self, now: &Ledger) {
-        self.weigh(now);
+    pub(super) fn update(&mut self, now: &Ledger, least: f64) {
+        self.weigh(now, least);
         self.drift = self.first.as_ref().map_or(0.0, |first| now.total - first.total);
     }
 
     /// Drift over scale [-].
     pub(super) fn relative(&self) -> f64 {
-        if self.scale > 0.0 { self.drift / self.scale } else { 0.0 }
+        share(self.drift, self.scale)
     }
 }
 
@@ -83,7 +83,7 @@ impl Check for EnergyCheck {
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let bound = look.bound(self.kind());
         let drift = look.balance.relative();
-        if drift.is_nan() || drift.abs() <= bound {
+        if !exceeds(drift.abs(), bound) {
             return Vec::new();
         }
         let message = format!(

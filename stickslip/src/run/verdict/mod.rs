@@ -6,6 +6,7 @@ mod energy;
 mod leaving;
 mod max_strain;
 mod momentum;
+mod negligible;
 mod neighbours;
 mod noise;
 mod precision;
@@ -23,6 +24,7 @@ use crate::run::start::Remembered;
 use crate::scene::{Body, Damping, HealthCheck, Response, Scene};
 use cutting::StepCuttings;
 use energy::{EnergyBalance, WeighingTimes};
+use negligible::Negligible;
 use neighbours::Neighbours;
 
 /// Every check of a run that the scene does not ignore.
@@ -78,6 +80,8 @@ struct CheckInputs<'a> {
     balance: &'a EnergyBalance,
     /// The bodies now.
     bodies: &'a [BodyState],
+    /// What is too little to be judged.
+    negligible: &'a Negligible,
     /// Neighbours at the start, body by body; none in rigid bodies.
     neighbours: &'a [Neighbours],
     /// Their particles now, in the order of [`Neighbours::start`].
@@ -151,6 +155,7 @@ pub(super) struct RunChecks {
     /// What ends the run.
     stop: Option<RunWarning>,
     cuttings: StepCuttings,
+    negligible: Negligible,
 }
 
 /// Looks in a run, at most.
@@ -177,6 +182,7 @@ impl RunChecks {
             lines: 0,
             stop: None,
             cuttings: StepCuttings::of(scene),
+            negligible: Negligible::of(scene),
         }
     }
 
@@ -225,8 +231,10 @@ impl RunChecks {
         (step, part): (f64, f64),
     ) -> Vec<String> {
         if self.weighing.come(simulation.steps()) {
-            self.balance.weigh(&simulation.ledger());
-            self.cuttings.look(scene, simulation);
+            let ledger = simulation.ledger();
+            let least = self.negligible.energy(simulation, &ledger);
+            self.balance.weigh(&ledger, least);
+            self.cuttings.look(scene, simulation, &self.negligible);
         }
         // Where steps are that small simulated time hardly goes on, and the next look by it is far.
         let bound = scene.health_bound(HealthCheck::SmallStep) * self.first_step;
@@ -252,7 +260,7 @@ impl RunChecks {
         }
         self.looks += 1;
         let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
-        self.balance.update(&ledger);
+        self.balance.update(&ledger, self.negligible.energy(simulation, &ledger));
         let particles = neighbours::particles(&mut self.neighbours, simulation);
         let look = CheckInputs {
             scene,
@@ -260,6 +268,7 @@ impl RunChecks {
             ledger: &ledger,
             balance: &self.balance,
             bodies: &bodies,
+            negligible: &self.negligible,
             neighbours: &self.neighbours,
             particles: &particles,
             steps: [part * simulation.stable_step(), self.first_step],
@@ -399,6 +408,16 @@ pub(super) fn line(warning: &RunWarning) -> String {
     format!("{}; {}", warning.message, warning.advice)
 }
 
+/// A part of a whole, of which nothing is none [-]. What is no number stays none.
+pub(super) fn share(part: f64, whole: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part / whole }
+}
+
+/// Whether a share is beyond its bound; what is no number is.
+fn exceeds(share: f64, bound: f64) -> bool {
+    share.is_nan() || share > bound
+}
+
 /// Whether the scene wants forces of damping, or to be brought to rest.
 fn asks_for_damping(scene: &Scene) -> bool {
     scene.damping != Damping::default() || scene.time.relax.is_some()
@@ -439,6 +458,14 @@ name = "block"
 material = "rubber"
 shape.box = { min = [0, 0], max = [1, 1] }
 "#;
+
+    #[test]
+    fn what_is_no_number_exceeds_every_bound() {
+        assert_eq!([share(0.0, 0.0), share(1.0, 4.0)], [0.0, 0.25]);
+        assert!(share(f64::NAN, 1.0).is_nan() && share(1.0, f64::NAN).is_nan());
+        let beyond = [0.1, 0.2, f64::NAN, share(1.0, 0.0)].map(|share| exceeds(share, 0.1));
+        assert_eq!(beyond, [false, true, true, true]);
+    }
 
     #[test]
     fn no_advice_names_what_the_scene_has_already() {

@@ -1,18 +1,21 @@
 //! Momentum of all bodies that nothing from outside explains.
 
-use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm, place};
+use super::negligible::Negligible;
+use super::{Check, CheckInputs, Finding, asks_for_damping, exceeds, minus, norm, place, share};
 use crate::door::{BodyState, Ledger, View};
 use crate::observe::{Memory, OutputError};
-use crate::scene::{ContactLaw, Face, HealthCheck, Normal, Scene, Spring};
+use crate::scene::{Body, ContactLaw, Face, HealthCheck, Normal, Scene, Spring};
 use serde::{Deserialize, Serialize};
 
 /// Holds the momentum of all bodies that forces move against what acted on them from outside:
 ///
 /// ```text
-/// |p(t) - p(0) - J(t)| / max(|J|, sum over bodies of M v_rms),   J: gravity, loads, supports, joints to the ground or to
-///                                                                prescribed bodies, contact with prescribed bodies,
-///                                                                values written between steps
+/// |p(t) - p(0) - J(t)| / max(|m g t| + sum |J_i|, sum over bodies of M v_rms)
+///
+///     J_i: loads, supports, joints to the ground or to prescribed bodies, contact with prescribed bodies, values written
+///     between steps
 /// ```
+/// with magnitudes, for what holds a body against gravity leaves next to nothing of the sum,
 /// along the axes along which no face of the domain acts. Where the same of one body alone, with what other bodies gave
 /// it in J, is at least half of that, it is named.
 #[derive(Default)]
@@ -45,6 +48,7 @@ pub(super) struct Moving<'a> {
     pub view: &'a dyn View,
     pub ledger: &'a Ledger,
     pub bodies: &'a [BodyState],
+    pub negligible: &'a Negligible,
 }
 
 /// Momentum that is missing.
@@ -83,7 +87,7 @@ impl MomentumBalance {
         let time = now.view.time();
         let gravity = now.scene.gravity.constant().unwrap_or_default();
         let moved: Vec<usize> = moved(now.scene).collect();
-        let given = impulses(now);
+        let (given, passed) = impulses(now);
         let outside = moved.iter().fold([0.0; 3], |sum, &i| add(sum, given[i]));
 
         let mass: f64 = moved.iter().map(|&i| now.bodies[i].mass).sum();
@@ -93,9 +97,13 @@ impl MomentumBalance {
         let account =
             self.account.get_or_insert_with(|| Account { start, time, force, ..Account::default() });
         let missing = along(account.missing(held, weight));
-        let speeds = moved.iter().map(|&i| &now.bodies[i]);
-        let size: f64 = speeds.map(|state| (2.0 * state.mass * state.kinetic).sqrt()).sum();
-        account.scale = account.scale.max(size).max(norm(along(add(outside, account.weight))));
+        let size = |&i: &usize| {
+            let state = &now.bodies[i];
+            (2.0 * state.mass * state.kinetic).sqrt() + now.negligible.momentum(i, state)
+        };
+        let size: f64 = moved.iter().map(size).sum();
+        let through: f64 = passed.into_iter().map(|impulse| norm(along(impulse))).sum();
+        account.scale = account.scale.max(size).max(norm(along(account.weight)) + through);
         let (momentum, scale) = (norm(missing), account.scale);
 
         let removed = now.view.removed();
@@ -117,7 +125,7 @@ impl MomentumBalance {
                 most = (part, Some(i));
             }
         }
-        Some(Missing { momentum, share: momentum / scale, body: most.1 })
+        Some(Missing { momentum, share: share(momentum, scale), body: most.1 })
     }
 }
 
@@ -126,17 +134,22 @@ impl Check for MomentumCheck {
         HealthCheck::Momentum
     }
 
-    fn advice(&self, _: &Scene) -> &'static str {
+    fn advice(&self, scene: &Scene) -> &'static str {
+        if scene.bodies.iter().all(Body::is_rigid) {
+            return "try a smaller time.courant";
+        }
         "two bodies should push each other alike: take normal = \"common\" in [[contact]]; smaller cells, a smaller \
          time.courant"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
-        let CheckInputs { scene, simulation: view, ledger, bodies, .. } = *look;
-        let Some(missing) = self.0.update(&Moving { scene, view, ledger, bodies }) else { return Vec::new() };
+        let CheckInputs { scene, simulation: view, ledger, bodies, negligible, .. } = *look;
+        let Some(missing) = self.0.update(&Moving { scene, view, ledger, bodies, negligible }) else {
+            return Vec::new();
+        };
         let Missing { momentum, share, body } = missing;
         let bound = look.bound(self.kind());
-        if share.is_nan() || share <= bound {
+        if !exceeds(share, bound) {
             return Vec::new();
         }
         let position = body.map(|body| bodies[body].position);
@@ -178,22 +191,29 @@ fn free_axes(scene: &Scene) -> [bool; 3] {
     })
 }
 
-/// Impulse on each body since the start, but for gravity [N s].
-fn impulses(now: &Moving) -> Vec<[f64; 3]> {
+/// Impulse on each body since the start, but for gravity, and those that come from outside one by one [N s].
+fn impulses(now: &Moving) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     let (scene, view) = (now.scene, now.view);
     let mut given = vec![[0.0; 3]; now.bodies.len()];
+    let mut passed = Vec::new();
+    let prescribed = |body: usize| scene.bodies[body].is_prescribed();
     let mut give = |body: usize, impulse: [f64; 3]| given[body] = add(given[body], impulse);
     for (load, state) in scene.loads.iter().zip(view.loads()) {
         give(load.body, state.impulse);
+        passed.push(state.impulse);
     }
     for (body, written) in view.written().iter().enumerate() {
         give(body, written.momentum);
+        passed.push(written.momentum);
     }
     let joints = view.joints();
     for (joint, state) in scene.joints.iter().zip(&joints) {
         give(joint.body, state.impulse);
         if let Some(to) = joint.to {
             give(to, state.impulse.map(|j| -j));
+        }
+        if joint.to.is_none_or(prescribed) || prescribed(joint.body) {
+            passed.push(state.impulse);
         }
     }
     for (spring, state) in scene.springs.iter().zip(joints.iter().skip(scene.joints.len())) {
@@ -206,8 +226,11 @@ fn impulses(now: &Moving) -> Vec<[f64; 3]> {
         let [first, second] = contact.bodies;
         give(first, contact.impulse.map(|j| -j));
         give(second, contact.impulse);
+        if contact.bodies.into_iter().any(prescribed) {
+            passed.push(contact.impulse);
+        }
     }
-    given
+    (given, passed)
 }
 
 fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

@@ -1,7 +1,7 @@
 //! Energy that became noise and was damped, though the scene asks for no damping; and bodies that move on and on while
 //! local damping, which is for bodies at rest, slows them.
 
-use super::{Check, CheckInputs, Finding, asks_for_damping, norm};
+use super::{Check, CheckInputs, Finding, asks_for_damping, exceeds, norm, share};
 use crate::geometry::Bounds;
 use crate::observe::{Memory, OutputError};
 use crate::scene::{BasisKind, Damping, HealthCheck, Scene};
@@ -66,8 +66,8 @@ impl Check for NoiseCheck {
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let damping = look.ledger.damping - look.ledger.impacts;
         let scale = look.balance.scale;
-        let part = damping / scale;
-        let is_large = part.abs() > look.bound(self.kind());
+        let part = share(damping, scale);
+        let is_large = exceeds(part.abs(), look.bound(self.kind()));
         let Damping { viscous, local, .. } = look.scene.damping;
         if local > 0.0 && viscous == 0.0 && look.scene.time.relax.is_none() {
             return self.goes_on(look).filter(|_| is_large).map_or(Vec::new(), |body| {

@@ -21,7 +21,7 @@ impl Check for SmallStepCheck {
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let ([step, first], bound) = (look.steps, look.bound(self.kind()));
         let share = step / first;
-        if share.is_nan() || share >= bound {
+        if share >= bound {
             return Vec::new();
         }
         let shrunk = format!(

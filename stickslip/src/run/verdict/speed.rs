@@ -1,6 +1,6 @@
 //! Motion that nears the speed of waves.
 
-use super::{Check, CheckInputs, Finding, minus, norm, place};
+use super::{Check, CheckInputs, Finding, exceeds, minus, norm, place, share};
 use crate::scene::{HealthCheck, Scene};
 
 /// Holds the fastest particle of each body that deforms, relative to the body on the whole, against the body's waves;
@@ -23,8 +23,8 @@ impl Check for SpeedCheck {
             let rigid = look.scene.bodies[body].is_rigid();
             let against = if rigid { [0.0; 3] } else { look.bodies[body].velocity };
             let fastest = look.simulation.fastest(body, against)?;
-            let share = norm(minus(fastest.velocity, against)) / look.wave_speed(body);
-            if share.is_nan() || share <= bound {
+            let share = share(norm(minus(fastest.velocity, against)), look.wave_speed(body));
+            if !exceeds(share, bound) {
                 return None;
             }
             let (name, place) = (&look.scene.bodies[body].name, place(fastest.position));

@@ -1,6 +1,6 @@
 //! Angular momentum lost or gained where no torque acts.
 
-use super::{Check, CheckInputs, Finding, asks_for_damping, minus, norm};
+use super::{Check, CheckInputs, Finding, asks_for_damping, exceeds, minus, norm, share};
 use crate::door::{BodyState, WrittenValues};
 use crate::observe::{Memory, OutputError};
 use crate::scene::{Face, HealthCheck, Scene, Transfer};
@@ -160,15 +160,20 @@ impl Alone {
         let state = &look.bodies[self.body];
         let now = own(state);
         let (before, after) = (norm(self.angular_momentum), norm(now));
-        let change = norm(minus(now, self.angular_momentum)) / before.max(after);
+        let change = share(norm(minus(now, self.angular_momentum)), before.max(after));
         // L^2 / 2 I, with I = m r^2 over the particles watched, which is right in the plane and large enough in space.
         let particles = &look.particles[self.body];
+        if particles.is_empty() {
+            return None;
+        }
         let squares = particles.iter().map(|particle| norm(minus(particle.position, state.position)).powi(2));
         let inertia = state.mass * squares.sum::<f64>() / particles.len() as f64;
         let turning = 0.5 * before.max(after).powi(2) / inertia;
         let whole = 0.5 * state.mass * norm(state.velocity).powi(2);
-        let turns = turning >= TURNS * (state.kinetic - whole + state.strain) && turning >= ROUNDING * whole;
-        if !turns || change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
+        let least = 0.5 * state.mass * look.negligible.speed(self.body).powi(2);
+        let rings = turning < TURNS * (state.kinetic - whole + state.strain);
+        let rests = turning < least || turning < ROUNDING * whole;
+        if rings || rests || !exceeds(change, look.bound(HealthCheck::AngularMomentum)) {
             return None;
         }
         let name = &look.scene.bodies[self.body].name;
@@ -192,16 +197,16 @@ impl Together {
             norm(own(state)) + norm(cross(minus(state.position, center), relative))
         };
         // Of bodies that meet head on, or fly side by side, arm and momentum have no moment but that of round-off.
-        let most = |state: &BodyState| {
+        let most = |(body, state): (usize, &BodyState)| {
             let relative = minus(state.velocity, velocity).map(|v| state.mass * v);
             let whole = state.velocity.map(|v| state.mass * v);
             let momentum = (HEAD_ON * norm(relative)).max(ROUNDING * norm(whole));
-            norm(minus(state.position, center)) * momentum
+            norm(minus(state.position, center)) * momentum.max(look.negligible.momentum(body, state))
         };
-        let sizes = look.bodies.iter().map(|state| size(state).max(most(state)));
+        let sizes = look.bodies.iter().enumerate().map(|(i, state)| size(state).max(most((i, state))));
         self.scale = self.scale.max(sizes.sum());
-        let change = norm(minus(own_of_all(look), self.angular_momentum)) / self.scale;
-        if change.is_nan() || change <= look.bound(HealthCheck::AngularMomentum) {
+        let change = share(norm(minus(own_of_all(look), self.angular_momentum)), self.scale);
+        if !exceeds(change, look.bound(HealthCheck::AngularMomentum)) {
             return None;
         }
         let message = format!(

@@ -1,7 +1,7 @@
 //! Stretch by the deformation gradient against stretch by positions: what a law sees, and where the particles are.
 
 use super::neighbours::Neighbours;
-use super::{Check, CheckInputs, Finding, minus, norm, place};
+use super::{Check, CheckInputs, Finding, exceeds, minus, norm, place};
 use crate::observe::{Memory, OutputError};
 use crate::scene::{BasisKind, HealthCheck, Scene};
 use std::collections::BTreeMap;
@@ -135,7 +135,7 @@ impl Stretch {
         let share = off / largest.max(LEAST_STRETCH);
         let trusted = look.scene.materials[look.scene.bodies[body].material].law.trusts_deformation();
         let bound = look.bound(HealthCheck::Strain) * if trusted { 1.0 } else { FLOW };
-        if share.is_nan() || share <= bound {
+        if !exceeds(share, bound) {
             return None;
         }
         let position = now[worst as usize].position;
@@ -164,7 +164,8 @@ fn shared(sums: &[PairSums]) -> Option<(f64, u32)> {
     let count: f64 = several().map(|sum| sum.count).sum();
     let worst = several().max_by(|a, b| (square(a) / a.count).total_cmp(&(square(b) / b.count)))?;
     let total: f64 = several().map(square).sum();
-    Some(((total / count).max(0.0).sqrt(), worst.particle))
+    let mean = total / count;
+    Some((if mean < 0.0 { 0.0 } else { mean.sqrt() }, worst.particle))
 }
 
 #[cfg(test)]
