@@ -197,7 +197,8 @@ impl Simulation for Puppet {
 /// What a run of this scene notes while it runs, and what its record says in the end.
 fn judge(text: &str, simulation: &mut dyn Simulation) -> (Vec<String>, Vec<RunWarning>) {
     let (notes, recorded, text) = summarized(text, simulation);
-    assert_eq!(text.matches("  warning    ").count(), recorded.len(), "{text}");
+    let kinds: std::collections::BTreeSet<&str> = recorded.iter().map(|warning| &warning.kind[..]).collect();
+    assert_eq!(text.matches("  warning    ").count(), kinds.len(), "a line a kind: {text}");
     (notes, recorded)
 }
 
@@ -656,7 +657,8 @@ fn who_makes_steps_short_is_known() {
     assert_eq!((limit.body, limit.particle, limit.position), (1, None, [1.0, 0.0, 0.0]));
 }
 
-/// Two disks that touch by half a cell: the record has it, though nothing is doubted; the scene may doubt it.
+/// Two disks that touch by half a cell: the record has it once, by how wide they touched at most, though nothing is
+/// doubted; the scene may doubt it.
 #[test]
 fn contact_that_the_grid_does_not_resolve_is_recorded() {
     let text = |health: &str| {
@@ -693,25 +695,27 @@ fn contact_that_the_grid_does_not_resolve_is_recorded() {
         let told = notes.iter().filter(|note| note.starts_with("contact not resolved: ")).count();
         (ended, told, manifest)
     };
-    let of =
-        |found: &[RunWarning]| found.iter().map(|it| (it.kind.clone(), it.count > 5)).collect::<Vec<_>>();
-    let contact = [("contact".to_owned(), true)];
+    let of = |found: &[RunWarning]| found.iter().map(|it| (it.kind.clone(), it.count)).collect::<Vec<_>>();
+    let contact = [("contact".to_owned(), 1)];
     for health in ["", "health.contact = \"record\""] {
         let (ended, told, manifest) = run(health);
         let summary = ended.expect("it goes through").to_string();
         assert!(
-            told == 1 && !summary.contains("  warning  ") && summary.contains("  contact    not resolved")
+            told == 0 && !summary.contains("  warning  ") && summary.contains("  contact    not resolved")
         );
         assert_eq!(
             (of(&manifest.warnings), &of(&manifest.remarks)[..]),
             (Vec::new(), &contact[..]),
             "{health}"
         );
-        assert!(manifest.remarks[0].message.contains("left and right 0."), "{:?}", manifest.remarks);
+        let remark = &manifest.remarks[0];
+        assert!(remark.message.contains("left and right 0."), "{remark:?}");
+        assert!(summary.contains(&format!("left and right {:.2} cells", remark.worst)), "{summary}");
+        assert_eq!(remark.time, 0.15, "judged at the end");
     }
     let (ended, told, manifest) = run("health.contact = \"warn\"");
     let summary = ended.expect("it goes through");
-    assert_eq!((told, &of(&manifest.warnings)[..], manifest.remarks.len()), (1, &contact[..], 0));
+    assert_eq!((told, &of(&manifest.warnings)[..], manifest.remarks.len()), (0, &contact[..], 0));
     assert!(summary.to_string().contains("  warning    from t = "), "{summary}");
     let (ended, told, manifest) = run("health.contact = \"ignore\"");
     assert!(ended.is_ok() && told == 0 && manifest.warnings.is_empty() && manifest.remarks.is_empty());

@@ -15,6 +15,13 @@ pub(super) struct Flat {
     pub half_width: f64,
 }
 
+/// Half of the shorter side of the face of a box with which one of two bodies lies flat before the other at the start,
+/// the nearest such face [m]; none where no face does.
+pub fn lies_flat(scene: &Scene, [a, b]: [usize; 2]) -> Option<f64> {
+    let flats = [Flat::of(scene, [a, b]), Flat::of(scene, [b, a])];
+    flats.into_iter().flatten().min_by(|a, b| a.gap.total_cmp(&b.gap)).map(|flat| flat.half_width)
+}
+
 /// A face of a box.
 struct BoxFace {
     center: [f64; 3],

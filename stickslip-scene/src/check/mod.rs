@@ -35,6 +35,7 @@ mod warning;
 
 pub use accuracy::Errors;
 pub use contact::{ContactEstimate, ContactResolution};
+pub use flat::lies_flat;
 pub use hertz::{Hertz, HertzPatch};
 pub use loads::LoadReport;
 pub use memory::Footprint;

@@ -358,11 +358,9 @@ impl Kept {
             };
             lines.extend(self.verdict.note(scene, view, noted));
         }
-        let (line, noted) = self.contact_watch.look(scene, view);
-        if let Some(noted) = noted {
+        if let Some(noted) = self.contact_watch.look(scene, view) {
             self.verdict.note(scene, view, noted);
         }
-        lines.extend(line);
         lines.extend(self.verdict.look(scene, view, (step, march.pace().part())));
         if self.verdict.asks_to_cut() {
             march.cut();
@@ -486,6 +484,10 @@ impl Watched<'_> {
         }
         let begun = Instant::now();
         notes.extend(kept.verdict.conclude(scene, *simulation, march.pace().part()));
+        if let Some(noted) = kept.contact_watch.conclude(scene, *simulation) {
+            // The summary has a line for it.
+            kept.verdict.note(scene, *simulation, noted);
+        }
         kept.clock.count(Beside::Checks, begun);
         let begun = Instant::now();
         recorder.record_present(*simulation)?;

@@ -60,9 +60,6 @@ impl ReferenceResult {
     }
 }
 
-/// Bodies of which the same warning is told one by one; of more, the worst is.
-const NAMED: usize = 3;
-
 impl Summary {
     pub(super) fn new(
         scene: &Scene,
@@ -108,7 +105,7 @@ impl Summary {
         share(self.energy_drift(), self.energy_scale)
     }
 
-    /// The warnings as lines of text: where many bodies have the same, one line with the worst of them.
+    /// The warnings as lines of text, one a kind: of several bodies the worst stands for all.
     pub fn warning_lines(&self) -> Vec<String> {
         let mut kinds: Vec<&str> = Vec::new();
         for warning in &self.warnings {
@@ -120,16 +117,15 @@ impl Summary {
             let times = if warning.count == 1 { "once" } else { &format!("{} times", warning.count) };
             format!("from t = {:.4e} s, {times}: {}", warning.time, line(warning))
         };
-        let of_kind = |kind: &str| -> Vec<String> {
+        let of_kind = |kind: &str| {
             let all: Vec<_> = self.warnings.iter().filter(|warning| warning.kind == kind).collect();
-            match all.iter().max_by(|a, b| a.worst.abs().total_cmp(&b.worst.abs())) {
-                Some(worst) if all.len() > NAMED => {
-                    vec![format!("{kind}: {} bodies, all in run.json; the worst {}", all.len(), told(worst))]
-                }
-                _ => all.into_iter().map(told).collect(),
-            }
+            let worst = all.iter().max_by(|a, b| a.worst.abs().total_cmp(&b.worst.abs()))?;
+            Some(match all.len() {
+                1 => told(worst),
+                count => format!("{kind}: {count} bodies, all in run.json; the worst {}", told(worst)),
+            })
         };
-        kinds.into_iter().flat_map(of_kind).collect()
+        kinds.into_iter().filter_map(of_kind).collect()
     }
 }
 

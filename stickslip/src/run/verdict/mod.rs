@@ -278,11 +278,13 @@ impl RunChecks {
             .collect();
         let mut lines = Vec::new();
         for (check, advice, found) in found {
+            // A line a kind in a run, whichever bodies join in later.
+            let told = self.found.iter().any(|warning| warning.kind == check.word());
             let mut new: Vec<(f64, String)> = Vec::new();
             for finding in found {
                 let worst = finding.worst.abs();
                 let line = self.take_note((scene, simulation), (check, advice), finding);
-                new.extend(line.map(|line| (worst, line)));
+                new.extend(line.filter(|_| !told).map(|line| (worst, line)));
             }
             // Of many bodies the worst stands for all.
             let others = new.len().saturating_sub(1);
