@@ -95,6 +95,7 @@ pub fn of_step(py: Python<'_>, error: &StepError) -> PyErr {
     let (StepError::Inverted { body, number, position, time, .. }
     | StepError::Escaped { body, number, position, time, .. }
     | StepError::NoThickness { body, number, position, time }
+    | StepError::Shrunk { body, number, position, time }
     | StepError::NotFinite { body, number, position, time }) = error
     else {
         return exception(py, "StepError", &said, Vec::new());

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use stickslip::column;
 use stickslip::door::*;
+use stickslip::march::MarchError;
 use stickslip::observe::{Checkpoint, Manifest, Results, RunWarning, Status};
 use stickslip::run::{self, Checkpointing, RunError, RunOptions};
 use stickslip::scene::{self, Scene};
@@ -723,6 +724,138 @@ fn contact_that_the_grid_does_not_resolve_is_recorded() {
     let Err(RunError::Unhealthy { warning, time }) = ended else { panic!("{ended:?}") };
     assert_eq!((warning.kind.as_str(), warning.count, manifest.status), ("contact", 1, Status::Stopped));
     assert!(time < 0.149 && manifest.error.is_some_and(|error| error.contains("by health.contact: ")));
+}
+
+/// Bars of four cells end to end, the first of which strikes the second: faces that lie flat on each other touch as wide
+/// as they are, and how round bodies touch says nothing of them.
+#[test]
+fn flat_faces_are_not_judged_as_round_ones() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = 0.25 }
+        time.end = 0.02
+        health.contact = "warn"
+        materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0 } }
+        [[bodies]]
+        name = "striker"
+        material = "gel"
+        shape.box = { min = [-3, 0], max = [0, 1] }
+        velocity = [0.1, 0]
+        [[bodies]]
+        name = "bar"
+        material = "gel"
+        shape.box = { min = [0, 0], max = [3, 1] }
+    "#;
+    let (_, _, summary) = of_scene(text);
+    assert!(!summary.contains("  contact    "), "{summary}");
+    // A face of one cell is no more than marginal, and the summary gives no figures of round contact.
+    let (_, warnings, summary) = of_scene(&text.replace("max = [0, 1]", "max = [0, 0.3]"));
+    assert!(warnings.is_empty() && summary.contains("  contact    marginal: "), "{summary}");
+    assert!(summary.contains("a flat face so narrow bends and tips") && !summary.contains("rolling"));
+}
+
+/// What the engine makes of a scene: see [`summarized`].
+fn of_scene(text: &str) -> (Vec<String>, Vec<RunWarning>, String) {
+    let scene = scene::parse("scene.toml", text, &[]).expect("a scene").scene;
+    summarized(text, &mut *stickslip::step::build(&scene).expect("no problem"))
+}
+
+/// A free rigid box that rests on a rigid floor, level or inclined, alone or with others on it, pulled by less than
+/// friction holds: what moves is round-off, and nothing is doubted.
+#[test]
+fn bodies_at_rest_are_not_doubted_for_their_round_off() {
+    let scene = |gravity: [f64; 2], boxes: usize, rest: &str| {
+        let [x, y] = gravity;
+        let boxes: String = (0..boxes)
+            .map(|i| {
+                format!(
+                    "[[bodies]]\nname = \"box {i}\"\nmaterial = \"wood\"\nrigid.free = {{}}\n\
+                     shape.box = {{ min = [-0.05, {}], max = [0.05, {}] }}\n",
+                    0.1 * i as f64,
+                    0.1 * (i + 1) as f64
+                )
+            })
+            .collect();
+        format!(
+            r#"
+            gravity = [{x}, {y}]
+            space = {{ dimension = "plane-strain", cell = 0.02 }}
+            time.end = 0.2
+            materials.wood = {{ density = 1000, hypoelastic = {{ young_modulus = 1e7, poisson_ratio = 0.3 }} }}
+            contact = [{{ friction = 0.5 }}]
+            {boxes}
+            [[bodies]]
+            name = "floor"
+            material = "wood"
+            shape.half_space = {{ point = [0, 0], normal = [0, 1] }}
+            rigid = {{}}
+            {rest}
+            "#
+        )
+    };
+    let pull = "loads = [{ body = \"box 0\", on = \"volume\", force = [40, 0] }]";
+    let pulled = format!("{pull}\n{}", scene([0.0, -9.81], 1, ""));
+    for text in [scene([0.0, -9.81], 1, ""), scene([3.0, -9.0], 1, ""), scene([0.0, -9.81], 3, ""), pulled] {
+        let (notes, warnings, summary) = of_scene(&text);
+        assert!(notes.is_empty() && warnings.is_empty(), "{notes:?} {warnings:?}\n{text}");
+        let drift = summary.lines().find(|line| line.contains("  energy ")).expect("a line");
+        let percent = drift.rsplit('(').next().and_then(|last| last.strip_suffix(" %)")).expect("a share");
+        assert!(percent.parse::<f64>().expect("a number").abs() < 1.0, "{drift}");
+    }
+}
+
+/// Energy that is no number ends the run: the record and the tables have what was before.
+#[test]
+fn a_value_that_is_no_number_ends_the_run() {
+    let out = tempfile::tempdir().expect("a folder");
+    let scene = scene::parse("puppet.toml", SCENE, &[]).expect("a scene").scene;
+    let energy: fn(f64) -> [f64; 2] = |t| [if t > 0.5 { f64::NAN } else { 1.0 }, 1.0];
+    let mut puppet = Puppet { energy, ..Puppet::new(|x, _| (x, [0.0; 2], REST)) };
+    let options = RunOptions { threads: 1, ..RunOptions::new(out.path()) };
+    let error = run::run(&scene, &mut puppet, &options, &mut |_| {}).expect_err("it cannot go on");
+    assert!(
+        error.to_string().starts_with("`total` of all bodies is not a finite number, t = 5.0"),
+        "{error}"
+    );
+    let results = Results::open(out.path()).expect("results");
+    let manifest = results.manifest();
+    assert_eq!((manifest.status, manifest.error.as_ref()), (Status::Failed, Some(&error.to_string())));
+    let rows = results.energy_table().expect("a table");
+    assert!(rows.iter().all(|row| row.ledger.total == 1.0) && rows.last().expect("rows").time > 0.49);
+}
+
+/// A body that is cooled below the end of its size: 1 + alpha T = -1. The message names the particle and its place, and
+/// the tables hold no row that is not finite.
+#[test]
+fn a_body_that_heat_leaves_no_size_ends_the_run() {
+    let text = r#"
+        space = { dimension = "plane-strain", cell = 0.01 }
+        time.end = 1e-3
+        loads = [{ body = "a", temperature = "-200000 * t / (1 ms)" }]
+        materials.hot = { density = 1000, thermal_expansion = 1e-5, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "a"
+        material = "hot"
+        shape.box = { min = [0, 0], max = [0.1, 0.1] }
+    "#;
+    let out = tempfile::tempdir().expect("a folder");
+    let scene = scene::parse("hot.toml", text, &[]).expect("a scene").scene;
+    let mut simulation = stickslip::step::build(&scene).expect("no problem");
+    let options = RunOptions { threads: 1, ..RunOptions::new(out.path()) };
+    let error = run::run(&scene, &mut *simulation, &options, &mut |_| {}).expect_err("it cannot go on");
+    let RunError::Step {
+        error: MarchError::Step(StepError::Shrunk { body, number, position, time }),
+        unsaved: None,
+    } = &error
+    else {
+        panic!("{error}")
+    };
+    assert_eq!((body.as_str(), *number), ("a", 0));
+    assert!(position.iter().all(|x| (-0.01..0.11).contains(x)) && *time < 1e-3, "{error}");
+    for name in ["energy.csv", "loads.csv", "bodies.csv"] {
+        let table = std::fs::read_to_string(out.path().join(name)).expect("a table");
+        assert!(!table.contains("NaN") && !table.contains("inf"), "{name}: {table}");
+    }
+    Results::open(out.path()).expect("results").energy_table().expect("a table");
 }
 
 /// Any check can be told to do no more than record.

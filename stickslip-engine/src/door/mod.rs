@@ -744,6 +744,34 @@ pub enum StepError {
         /// When [s].
         time: f64,
     },
+    /// A value of the state, or of what it adds up to, is not a finite number.
+    #[error(
+        "{what} is not a finite number{}, t = {time:.6e} s",
+        position.as_ref().map(|position| format!(" at {} m", place(position))).unwrap_or_default()
+    )]
+    NoNumber {
+        /// What it is, and of what.
+        what: String,
+        /// Where the particle or the body is, if that is known [m].
+        position: Option<[f64; 3]>,
+        /// When [s].
+        time: f64,
+    },
+    /// Heat leaves a particle no size: 1 + alpha T is not above zero.
+    #[error(
+        "particle {number} of body `{body}` shrinks to nothing by its change of temperature at {} m, t = {time:.6e} s",
+        place(position)
+    )]
+    Shrunk {
+        /// Name of the body.
+        body: String,
+        /// Number of the particle in its body.
+        number: u32,
+        /// Where it is [m].
+        position: [f64; 3],
+        /// When [s].
+        time: f64,
+    },
     /// A function from outside has no answer.
     #[error("{what} failed near t = {time:.6e} s: {reason}")]
     Outside {
@@ -795,8 +823,12 @@ impl StepError {
             StepError::NoThickness { .. } => {
                 "it strained far in one step: try a smaller time.courant; look at the last frame for what went wrong first"
             }
+            StepError::Shrunk { .. } => {
+                "1 + thermal_expansion times temperature must stay above zero: see which unit each of them has; a load's \
+                 `temperature` is the change since the start"
+            }
             StepError::Outside { .. } => "mend the function, and go on from the last checkpoint",
-            StepError::NotFinite { .. } => {
+            StepError::NotFinite { .. } | StepError::NoNumber { .. } => {
                 "try a smaller time.courant, or mend the formula of a prescribed motion; look at the last frame for what went wrong first"
             }
         }

@@ -9,8 +9,10 @@
 //! with half of the growth of the last step and half of that of the next one, by the state between them.
 
 use super::Engine;
+use super::pass::{FaultKind, ParticleFault};
 use crate::basis::Basis;
 use crate::body::Body;
+use crate::door::StepError;
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
 use crate::load::LoadPoints;
@@ -33,12 +35,18 @@ pub struct Warmed<T> {
     strain: T,
     /// [J]
     work: f64,
+    /// What is wrong with that.
+    fault: Option<FaultKind>,
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// Brings what loads heat to the temperature at the end of a step of `dt` from now on, and books what that does.
-    pub(super) fn heat(&mut self, dt: T) {
+    ///
+    /// # Errors
+    /// A particle shrinks to nothing, or its energy is not a finite number.
+    pub(super) fn heat(&mut self, dt: T) -> Result<(), StepError> {
         let (time, room) = (self.state.time + dt.f64(), &mut self.workspace.warmed);
+        let mut faults: Vec<ParticleFault> = Vec::new();
         for (load, sums) in self.settings.loads.iter().zip(&mut self.state.loads) {
             let Action::Temperature(temperature) = &load.action else { continue };
             let start = Instant::now();
@@ -49,6 +57,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 let body = &*body;
                 each(room, PARTICLES, |i, warmed| *warmed = warm(body, i, (load, temperature, time)));
             }
+            let numbers = body.particles.numbers().iter().zip(&*room).enumerate();
+            faults.extend(numbers.filter_map(|(particle, (&number, warmed))| {
+                let kind = warmed.fault?;
+                Some(ParticleFault { body: load.body, particle, number, kind })
+            }));
             let first = first_of_heat(body);
             let set = |line: &mut [T], of: fn(&Warmed<T>) -> T| {
                 line.iter_mut().zip(&*room).for_each(|(entry, warmed)| *entry = of(warmed));
@@ -62,6 +75,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             sums.work += work[0].value();
             self.watch.lap("heat", start);
         }
+        self.judge(faults.into_iter().min_by_key(|fault| (fault.body, fault.number)))
     }
 }
 
@@ -88,6 +102,10 @@ fn warm<T: Real, const D: usize>(
     let moment = Moment { time, place: particle.position.space(), start: start.space(), ..Moment::default() };
     let after = T::of(temperature.at_moment(&moment));
     let alpha = body.expansion.f64();
+    let size = 1.0 + alpha * after.f64();
+    if size.is_nan() || size <= 0.0 {
+        return Warmed { temperature: before, fault: Some(FaultKind::Shrunk), ..Warmed::default() };
+    }
     let next = alpha * (after.f64() - before.f64()) / (1.0 + alpha * before.f64());
     let growth = 0.5 * (libm::log1p(strain.f64()) + libm::log1p(next));
     let mut work = 0.0;
@@ -100,5 +118,8 @@ fn warm<T: Real, const D: usize>(
         let stored = energy * (particle.mass / body.density / natural.volume);
         work = growth * (3.0 * stored.f64() - (particle.volume * particle.stress.trace()).f64());
     }
-    Warmed { temperature: after, strain: T::of(next), work }
+    if !work.is_finite() {
+        return Warmed { temperature: before, fault: Some(FaultKind::NotFinite), ..Warmed::default() };
+    }
+    Warmed { temperature: after, strain: T::of(next), work, fault: None }
 }

@@ -130,7 +130,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.hold_supported_nodes(); //                           v~, where they act
         self.contact_on_interpolated(dt, ContactUse::Strain); //  v~, and walls        (5)-(13), (20)-(22)
         self.average_dilatation(dt); //                           of nearly incompressible bodies
-        self.heat(dt); //                                         temperatures at the end of the step
+        self.heat(dt)?; //                                        temperatures at the end of the step
         self.update_stress(dt)?; //                               G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                                v~ moves the particles, too
         self.release_supported_nodes(); //                        v as it was
@@ -172,7 +172,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.keep_velocities(); //                                v~, for dv
         self.damp(dt); //                                         of v~ for dv
         self.average_dilatation(dt); //                           of nearly incompressible bodies
-        self.heat(dt); //                                         temperatures at the end of the step
+        self.heat(dt)?; //                                        temperatures at the end of the step
         self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
         self.account_mechanism(dt); //                            forces and works of joints
@@ -209,7 +209,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         self.hold_supported_nodes(); //                           v~, where supports act
         self.contact_on_straining(dt); //                         v~, and walls
         self.average_dilatation(dt); //                           of nearly incompressible bodies
-        self.heat(dt); //                                         temperatures at the end of the step
+        self.heat(dt)?; //                                        temperatures at the end of the step
         self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
         self.account_mechanism(dt); //                            forces and works of joints

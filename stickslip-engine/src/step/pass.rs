@@ -120,6 +120,8 @@ pub enum FaultKind {
     NoThickness,
     /// A value of it is not a finite number.
     NotFinite,
+    /// Heat leaves it no size.
+    Shrunk,
 }
 
 /// What a pass found out.

@@ -44,7 +44,8 @@ impl RelaxationProgress {
     /// r: unbalanced force, f: force of the stress, r - f: gravity, loads and contact.
     pub fn take(&mut self, [unbalanced, internal, external]: [f64; 3], kinetic: f64) {
         let applied = internal.max(external);
-        self.residual = if applied > 0.0 { unbalanced / applied } else { 0.0 };
+        // What is no number is not balanced.
+        self.residual = if unbalanced == 0.0 { 0.0 } else { unbalanced / applied };
         self.kinetic = [kinetic, self.kinetic[0]];
     }
 }

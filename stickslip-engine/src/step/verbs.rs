@@ -413,7 +413,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// What the step makes of a fault: an error, or where there are other ranks a note, for all of them to end the step
     /// together.
-    fn judge(&mut self, fault: Option<ParticleFault>) -> Result<(), StepError> {
+    pub(super) fn judge(&mut self, fault: Option<ParticleFault>) -> Result<(), StepError> {
         let report = fault.map(|fault| self.report(&fault));
         if let Some(among) = &mut self.among {
             among.take_note(report);
@@ -443,6 +443,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             }
             FaultKind::NoThickness => StepError::NoThickness { body, number, position, time },
             FaultKind::NotFinite => StepError::NotFinite { body, number, position, time },
+            FaultKind::Shrunk => StepError::Shrunk { body, number, position, time },
         }
     }
 }

@@ -21,11 +21,29 @@ pub struct OutputError {
 }
 
 impl OutputError {
+    /// That a number of a table is not finite: none of its rows is written.
+    pub(super) fn no_number(path: &Path, what: String) -> Self {
+        OutputError {
+            path: path.to_path_buf(),
+            source: io::Error::new(io::ErrorKind::InvalidData, NoNumber(what)),
+        }
+    }
+
+    /// Whether it is that.
+    pub fn is_no_number(&self) -> bool {
+        self.source.get_ref().is_some_and(|inner| inner.is::<NoNumber>())
+    }
+
     /// Ties an error of the operating system to the file at hand.
     pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> OutputError + '_ {
         move |source| OutputError { path: path.to_path_buf(), source }
     }
 }
+
+/// A number of a table that is not finite.
+#[derive(Debug, thiserror::Error)]
+#[error("{0} is not a finite number")]
+struct NoNumber(String);
 
 fn remedy(error: &io::Error) -> &'static str {
     match error.kind() {

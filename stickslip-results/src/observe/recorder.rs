@@ -139,6 +139,12 @@ impl<'a> Recorder<'a> {
         })
     }
 
+    /// Whether something is to be recorded now.
+    pub fn is_due(&self, view: &dyn View) -> bool {
+        let time = view.time();
+        self.scheduled.iter().any(|output| time >= output.observer.next())
+    }
+
     /// Records what is due: to be called after each step.
     ///
     /// # Errors
@@ -158,13 +164,18 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records the state in which a step failed. If the time did not advance, tables keep the row that they have and
-    /// snapshots are replaced: what went wrong is to be seen.
+    /// snapshots are replaced: what went wrong is to be seen. Tables take no rows with numbers that are not finite.
     ///
     /// # Errors
     /// A file cannot be written.
     pub fn record_failure(&mut self, view: &dyn View) -> Result<(), OutputError> {
         let time = view.time();
-        self.record_where(view, |output| output.last != Some(time) || output.observer.replaces())
+        self.folder.is_in_place()?;
+        let due = |output: &&mut Scheduled| output.last != Some(time) || output.observer.replaces();
+        self.scheduled.iter_mut().filter(due).try_for_each(|output| match output.observer.observe(view) {
+            Err(error) if error.is_no_number() => Ok(()),
+            other => other.map(|()| output.last = Some(time)),
+        })
     }
 
     /// Lets every output write what only the whole run tells: to be called once, after the last record.

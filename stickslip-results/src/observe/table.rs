@@ -173,10 +173,12 @@ impl<R: TableRow> CsvTable<R> {
     /// Adds rows. They are complete when they are in the file, which is soon.
     ///
     /// # Errors
-    /// The disk was full or refused when rows were added before; then the file ends with those before them.
+    /// The disk was full or refused when rows were added before; then the file ends with those before them. A number is
+    /// not finite; then none of these rows is added.
     pub(super) fn append(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), OutputError> {
         self.writer.make_room()?;
         let bytes = encode(rows, self.unit, self.without);
+        let bytes = bytes.map_err(|what| OutputError::no_number(self.writer.about(), what))?;
         self.writer.hand_over(bytes.len(), move |sheet| sheet.write(&bytes));
         Ok(())
     }
@@ -274,17 +276,40 @@ fn begins_with(path: &Path, text: &str) -> bool {
     read.is_ok() && found == text.as_bytes()
 }
 
-/// The lines of rows, each with its time in the scene's own unit [s] if there is one, without some columns.
-fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>, without: &[&str]) -> Vec<u8> {
+/// The lines of rows, each with its time in the scene's own unit [s] if there is one, without some columns; or which
+/// number is not finite.
+fn encode<R: TableRow>(
+    rows: impl IntoIterator<Item = R>,
+    unit: Option<f64>,
+    without: &[&str],
+) -> Result<Vec<u8>, String> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     for mut row in rows {
         let mut in_units = unit.map(|unit| row.number("time").expect("every row has its time") / unit);
+        if let Some(what) = no_number(&row) {
+            return Err(what);
+        }
         let columns = row.columns().into_iter().filter(|(name, _)| !without.contains(name));
         let entries: Vec<CellValue> =
             columns.map(|(_, entry)| entry).chain(in_units.as_mut().map(CellValue::Number)).collect();
         writer.serialize(entries).expect("entries are numbers and names");
     }
-    writer.into_inner().expect("a vector takes all bytes")
+    Ok(writer.into_inner().expect("a vector takes all bytes"))
+}
+
+/// What of a row is not a finite number: its column, its names and its time.
+fn no_number<R: TableRow>(row: &R) -> Option<String> {
+    let mut row = row.clone();
+    let columns = row.columns();
+    let is_bad = |value: &CellValue| matches!(value, CellValue::Number(number) if !number.is_finite());
+    let (column, _) = columns.iter().find(|(_, value)| is_bad(value))?;
+    let told = |(name, value): &(&str, CellValue)| match value {
+        CellValue::Name(of) => Some(format!("{name} `{of}`")),
+        CellValue::Number(time) if *name == "time" => Some(format!("t = {time:.6e} s")),
+        _ => None,
+    };
+    let told: Vec<String> = columns.iter().filter_map(told).collect();
+    Some(format!("`{column}` ({})", told.join(", ")))
 }
 
 /// All whole rows of a table. Columns are found by their names, and others passed over; those that an earlier version
@@ -371,6 +396,22 @@ mod tests {
     fn numbers_are_known_by_the_names_of_their_columns() {
         let row = row(0.5, "a");
         assert_eq!(["time", "body", "mass"].map(|column| row.number(column)), [Some(0.5), None, None]);
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_ends_the_table_before_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        let mut table = CsvTable::open(&path, None, &Arc::default()).unwrap();
+        table.append([row(0.5, "a")]).unwrap();
+        for number in [f64::NAN, f64::INFINITY] {
+            let error = table.append([row(1.0, "a"), row(number, "b")]).unwrap_err();
+            assert!(error.is_no_number());
+            assert!(error.to_string().contains("`time` (t = "), "{error}");
+            assert!(error.to_string().contains("body `b`) is not a finite number"), "{error}");
+        }
+        table.finish().unwrap();
+        assert_eq!(read_rows::<FieldPlace>(&path).unwrap(), [row(0.5, "a")]);
     }
 
     #[test]

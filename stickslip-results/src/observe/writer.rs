@@ -70,6 +70,11 @@ impl<F: Send + 'static> Writer<F> {
         })
     }
 
+    /// The file or the folder that it writes.
+    pub(super) fn about(&self) -> &Path {
+        &self.about
+    }
+
     /// How long it waits.
     pub(super) fn waiting(&self) -> &Waiting {
         &self.waiting

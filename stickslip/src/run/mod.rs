@@ -4,6 +4,7 @@ mod checkpoints;
 mod clock;
 mod contact_watch;
 mod error;
+mod not_finite;
 mod origin;
 mod start;
 mod summary;
@@ -440,10 +441,21 @@ impl Watched<'_> {
                 Err(error) => break Err(error),
             };
             let begun = Instant::now();
+            let looks = kept.verdict.looks();
+            if recorder.is_due(*simulation)
+                && let Some(error) = not_finite::in_sums(scene, *simulation)
+            {
+                break Err(error.into());
+            }
             recorded = recorder.record_due(*simulation);
             kept.clock.count(Beside::Outputs, begun);
             let begun = Instant::now();
             notes.extend(kept.look(scene, *simulation, (&mut march, step)));
+            if kept.verdict.looks() > looks
+                && let Some(error) = not_finite::in_histories(scene, *simulation)
+            {
+                break Err(error.into());
+            }
             kept.clock.count(Beside::Checks, begun);
             if reports.due() || !notes.is_empty() {
                 let notes = std::mem::take(&mut notes);
@@ -461,6 +473,10 @@ impl Watched<'_> {
             stopped = recorded.is_err() || stop() || kept.verdict.stop().is_some();
         };
         recorded?;
+        let way = way.and_then(|way| {
+            let bad = not_finite::in_sums(scene, *simulation);
+            bad.or_else(|| not_finite::in_histories(scene, *simulation)).map_or(Ok(way), |e| Err(e.into()))
+        });
         let status = match way {
             Ok(MarchEnd::Arrived) => Status::Finished,
             Ok(MarchEnd::BrokenOff) if options.stop.load(Ordering::Relaxed) => Status::Interrupted,
