@@ -172,6 +172,128 @@ fn a_step_wave_arrives_and_runs_at_the_speed_of_the_bar() {
     assert!((force / (-SPEED * 4.0 * h) - 1.0).abs() < 0.05, "force {force}");
 }
 
+/// A block that turns, in the plane and in space: its velocity is linear in the place, and probes on its faces, edges
+/// and corners have it to round-off. Beside another block that rests, each has that of its own body.
+#[test]
+fn probes_are_exact_for_what_is_linear_up_to_the_surface() {
+    for (dimension, points) in [
+        ("plane-strain", vec![[0.4, 0.0, 0.0], [0.4, 0.3, 0.0], [0.0, -0.3, 0.0], [0.1, 0.2, 0.0]]),
+        ("3d", vec![[0.4, 0.0, 0.0], [0.4, 0.3, 0.0], [0.4, 0.3, 0.2], [0.1, -0.05, 0.02]]),
+    ] {
+        let axes = if dimension == "3d" { 3 } else { 2 };
+        let list = |x: [f64; 3]| format!("{:?}", &x[..axes]);
+        let spin = if axes == 3 { "[0.3, -0.5, 2]" } else { "2" };
+        let probes: String = points
+            .iter()
+            .enumerate()
+            .flat_map(|(i, &at)| ["space", "material"].map(|anchor| (i, list(at), anchor)))
+            .map(|(i, at, anchor)| {
+                format!("[[outputs.probes]]\nname = \"{i} {anchor}\"\nat = {at}\nfixed_in = \"{anchor}\"\n")
+            })
+            .collect();
+        let text = format!(
+            r#"
+            space = {{ dimension = "{dimension}", cell = 0.1 }}
+            time.end = 1e-9
+            materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            [[bodies]]
+            name = "turning"
+            material = "gel"
+            shape.box = {{ min = {}, max = {} }}
+            velocity = {}
+            spin = {spin}
+            [[bodies]]
+            name = "resting"
+            material = "gel"
+            shape.box = {{ min = {}, max = {} }}
+            [outputs]
+            particles = "never"
+            {probes}
+            [[outputs.probes]]
+            name = "resting face"
+            at = {}
+            "#,
+            list([-0.4, -0.3, -0.2]),
+            list([0.4, 0.3, 0.2]),
+            list([0.7, 0.1, 0.0]),
+            list([0.42, -0.3, -0.2]),
+            list([0.8, 0.3, 0.2]),
+            list([0.45, 0.0, 0.0]),
+        );
+        let scene = scene::parse("turning.toml", &text, &[]).unwrap().scene;
+        let folder = tempfile::tempdir().unwrap();
+        let rows = run_to(folder.path(), &scene).probes_table().unwrap();
+        let omega = if axes == 3 { [0.3, -0.5, 2.0] } else { [0.0, 0.0, 2.0] };
+        let start = |name: &str| rows.iter().find(|row| row.probe == name).unwrap().sample;
+        for (i, [x, y, z]) in points.into_iter().enumerate() {
+            let exact = [
+                0.7 + omega[1] * z - omega[2] * y,
+                0.1 + omega[2] * x - omega[0] * z,
+                omega[0] * y - omega[1] * x,
+            ];
+            for anchor in ["space", "material"] {
+                let found = start(&format!("{i} {anchor}"));
+                let off = (0..3).map(|k| (found.velocity[k] - exact[k]).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-9, "{dimension} {i} {anchor}: {:?} {exact:?}", found.velocity);
+                assert_eq!(found.position, [x, y, z]);
+            }
+        }
+        assert_eq!(start("resting face").velocity, [0.0; 3], "{dimension}");
+    }
+}
+
+/// Lame's thick cylinder, a quarter of it with eight cells across the wall: at the bore the radial stress is -p and the
+/// hoop stress p (b^2 + a^2) / (b^2 - a^2), at the outer surface 0 and 2 p a^2 / (b^2 - a^2). Source: Timoshenko and
+/// Goodier (1970), Theory of Elasticity, section 28. Within 4 % of p at the bore, where stress falls as 1/r^2 over a cell
+/// and a mean over the particles within two cells is off by 30 %, and 2 % outside.
+#[test]
+fn probes_at_the_bore_of_a_cylinder_have_lames_stress() {
+    let p = 1e-3;
+    let text = format!(
+        r#"
+        [space]
+        dimension = "plane-strain"
+        cell = 0.125
+        domain = {{ min = [0, 0], max = [3, 3], x_min = "symmetry", y_min = "symmetry" }}
+        [time]
+        end = 200
+        relax = {{}}
+        [materials.m]
+        density = 1
+        neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }}
+        [[bodies]]
+        name = "wall"
+        material = "m"
+        [bodies.shape]
+        intersection = [
+            {{ difference = [{{ ball = {{ center = [0, 0], radius = 2 }} }}, {{ ball = {{ center = [0, 0], radius = 1 }} }}] }},
+            {{ box = {{ min = [0, 0], max = [3, 3] }} }},
+        ]
+        [[loads]]
+        body = "wall"
+        within.ball = {{ center = [0, 0], radius = 1.5 }}
+        pressure = {p}
+        [outputs]
+        particles = "never"
+        [[outputs.probes]]
+        name = "bore"
+        at = [1.0, 0.05]
+        [[outputs.probes]]
+        name = "outside"
+        at = [1.999, 0.05]
+        "#
+    );
+    let scene = scene::parse("cylinder.toml", &text, &[]).unwrap().scene;
+    let folder = tempfile::tempdir().unwrap();
+    let rows = run_to(folder.path(), &scene).probes_table().unwrap();
+    for (probe, exact, within) in [("bore", [-1.0, 5.0 / 3.0], 0.04), ("outside", [0.0, 2.0 / 3.0], 0.02)] {
+        let stress = rows.iter().rfind(|row| row.probe == probe).unwrap().sample.stress;
+        let found = [stress[0] / p, stress[1] / p];
+        println!("{probe}: radial and hoop stress over p {found:?}, exact {exact:?}");
+        assert!((0..2).all(|i| (found[i] - exact[i]).abs() < within), "{probe}: {found:?} {exact:?}");
+    }
+}
+
 #[test]
 fn visiting_shows_the_particles_of_the_snapshot() {
     let scene = scene::parse("bar.toml", &bar(), &[]).unwrap().scene;

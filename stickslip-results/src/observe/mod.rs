@@ -21,6 +21,7 @@ mod fronts;
 mod grid;
 mod groups;
 mod joints;
+mod linear_fit;
 mod loads;
 mod manifest;
 mod memory;

@@ -1,12 +1,14 @@
-//! Points at which the material is sampled, by a smooth mean over the particles around.
+//! Points at which the material is sampled, by a straight line through the particles around.
 
 use super::file::OutputError;
+use super::linear_fit::{LinearFit, PlaceSums};
 use super::memory::Memory;
 use super::shared::{Asked, Question, answer};
 use crate::door::{ParticleView, View};
 use crate::exact::ExactSum;
 use crate::scene::{Anchor, Domain, Scene};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Motion and stress of the material at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,19 +35,23 @@ pub(super) struct SamplePoint {
 /// Points that are sampled together. Each looks at the particles within two cells:
 ///
 /// ```text
-/// q = sum_p m_p w(r_p) q_p / sum_p m_p w(r_p),   w(r) = (1 - r/R)^4 (1 + 4 r/R),   R = 2 cells  (Wendland's C2)
+/// q = sum_p a_p q_p / sum_p a_p,   a_p = m_p w(r_p) (1 + k . (x_p - x_m))
+/// w(r) = (1 - r/R)^4 (1 + 4 r/R),   R = 2 cells        (Wendland's C2)
 /// ```
 ///
-/// with r the distance from the point. The mean is smooth in space and time and never beyond the values of the
-/// particles; it smears a sharp front over about a cell, and within a cell of a surface it leans to the inside. A point
-/// of space takes the particles that are there now; a point of the material takes those of the first sample,
-/// with their weights, for ever.
+/// with r the distance from the point, and k as of [`super::linear_fit`]: exact for what is linear in space up to the
+/// surface, where few particles are on one side, and smooth in time; it smears a sharp front over about a cell. Of
+/// several bodies around a point that names none, the one that weighs most there counts. A point of space takes the
+/// particles that are there now; a point of the material takes those of the first sample, with their weights, for ever.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Points {
     points: Vec<(SamplePoint, TakenParticles)>,
     /// Indices of the bodies that are not rigid.
     bodies: Vec<usize>,
     radius: f64,
+    /// Of points that take the particles around them now: whose, and the line through them.
+    #[serde(default)]
+    around: Vec<Option<(usize, LinearFit)>>,
     /// Where images of particles are, if the domain is periodic.
     #[serde(skip)]
     domain: Option<Domain>,
@@ -80,12 +86,14 @@ impl Points {
             (point, TakenParticles::Around)
         });
         let domain = scene.domain.clone().filter(|domain| domain.periods() != [0.0; 3]);
-        Points { points: points.collect(), bodies, radius: RADIUS * scene.discretization.cell, domain }
+        let radius = RADIUS * scene.discretization.cell;
+        Points { points: points.collect(), bodies, radius, around: Vec::new(), domain }
     }
 
     /// The material at each point now; `None` where no particle is around.
     /// The first call binds the points of the material.
     pub(super) fn sample(&mut self, view: &dyn View) -> Vec<Option<PointSample>> {
+        self.look_around(view);
         let (sums, found) = answer(view, self);
         let samples: Vec<_> = sums.iter().map(WeightedSum::mean).collect();
         for (i, mut weights) in found.into_iter().enumerate() {
@@ -110,6 +118,20 @@ impl Points {
         samples.into_iter().zip(&self.points).map(place).collect()
     }
 
+    /// Finds the line through the particles around each point that takes those of now.
+    fn look_around(&mut self, view: &dyn View) {
+        self.around = vec![None; self.points.len()];
+        if !self.points.iter().any(|(_, taken)| matches!(taken, TakenParticles::Around)) {
+            return;
+        }
+        let radius = self.radius;
+        let most = |sums: BTreeMap<usize, PlaceSums>| {
+            let most = sums.into_iter().reduce(|a, b| if b.1.weight() > a.1.weight() { b } else { a });
+            most.map(|(body, sums)| (body, sums.fit(radius)))
+        };
+        self.around = answer(view, &Surroundings(self)).into_iter().map(most).collect();
+    }
+
     /// Sums over particles at each point, and of points of the material that have none yet their numbers and weights.
     fn sums(&self, view: &dyn View) -> PointSums {
         let mut sums = vec![WeightedSum::default(); self.points.len()];
@@ -122,8 +144,8 @@ impl Points {
             }
             view.visit(body, &mut |particle| {
                 for &i in &here {
-                    let weight = self.weight(i, particle);
-                    if weight > 0.0 {
+                    let weight = self.weight(i, (body, particle));
+                    if weight != 0.0 {
                         sums[i].add(weight, particle);
                         if self.binds(i) {
                             found[i].push((particle.number, weight));
@@ -170,16 +192,27 @@ impl Points {
         point.fixed_in == Anchor::Material && matches!(taken, TakenParticles::Around)
     }
 
-    /// m w, zero for most particles.
-    fn weight(&self, i: usize, particle: &ParticleView) -> f64 {
+    /// m w of a particle, zero of most, and how far it is from a point [m].
+    fn near(&self, i: usize, particle: &ParticleView) -> (f64, [f64; 3]) {
+        let at = self.points[i].0.at;
+        let place = match &self.domain {
+            Some(domain) => domain.image_near(particle.position, at),
+            None => particle.position,
+        };
+        let offset = std::array::from_fn(|k| place[k] - at[k]);
+        (particle.mass * wendland(&offset, self.radius), offset)
+    }
+
+    /// a_p of a particle of a body, zero of most.
+    fn weight(&self, i: usize, (body, particle): (usize, &ParticleView)) -> f64 {
         match &self.points[i] {
-            (point, TakenParticles::Around) => {
-                let place = match &self.domain {
-                    Some(domain) => domain.image_near(particle.position, point.at),
-                    None => particle.position,
-                };
-                particle.mass * wendland(&point.at, &place, self.radius)
-            }
+            (_, TakenParticles::Around) => match &self.around[i] {
+                Some((of, fit)) if *of == body => {
+                    let (weight, offset) = self.near(i, particle);
+                    if weight > 0.0 { weight * fit.part(offset) } else { 0.0 }
+                }
+                _ => 0.0,
+            },
             (_, TakenParticles::These { weights, .. }) => {
                 let (Some(first), Some(last)) = (weights.first(), weights.last()) else { return 0.0 };
                 if particle.number < first.0 || particle.number > last.0 {
@@ -220,6 +253,51 @@ impl Question for Points {
     }
 }
 
+/// Asks which particles are around points that take those of now.
+#[derive(Serialize)]
+pub(super) struct Surroundings<'a>(pub &'a Points);
+
+impl Question for Surroundings<'_> {
+    /// Of each point, by body.
+    type Answer = Vec<BTreeMap<usize, PlaceSums>>;
+
+    fn look(&self, view: &dyn View) -> Self::Answer {
+        let points = self.0;
+        let mut sums = vec![BTreeMap::<usize, PlaceSums>::new(); points.points.len()];
+        for &body in &points.bodies {
+            let takes = |&i: &usize| {
+                let (point, taken) = &points.points[i];
+                matches!(taken, TakenParticles::Around) && point.body.is_none_or(|b| b == body)
+            };
+            let here: Vec<usize> = (0..points.points.len()).filter(takes).collect();
+            if here.is_empty() {
+                continue;
+            }
+            view.visit(body, &mut |particle| {
+                for &i in &here {
+                    let (weight, offset) = points.near(i, particle);
+                    if weight > 0.0 {
+                        sums[i].entry(body).or_default().add(weight, offset);
+                    }
+                }
+            });
+        }
+        sums
+    }
+
+    fn join(mut sums: Self::Answer, others: Self::Answer) -> Self::Answer {
+        for (sums, others) in sums.iter_mut().zip(others) {
+            others.iter().for_each(|(&body, other)| sums.entry(body).or_default().merge(other));
+        }
+        sums
+    }
+
+    fn asked(&self) -> Asked {
+        let Points { domain, .. } = self.0;
+        Asked::Surroundings(PointsQuestion { points: self.0.clone(), domain: domain.clone() })
+    }
+}
+
 impl PointsQuestion {
     /// The points that it is about.
     pub(super) fn points(&self) -> Points {
@@ -227,8 +305,8 @@ impl PointsQuestion {
     }
 }
 
-fn wendland(a: &[f64; 3], b: &[f64; 3], radius: f64) -> f64 {
-    let squared = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2);
+fn wendland([x, y, z]: &[f64; 3], radius: f64) -> f64 {
+    let squared = x * x + y * y + z * z;
     if squared >= radius * radius {
         return 0.0;
     }

@@ -5,7 +5,7 @@ use super::meeting::Meetings;
 use crate::door::View;
 use crate::observe::arrivals::{Furthest, MassMean};
 use crate::observe::fronts::FrontQuestion;
-use crate::observe::points::PointsQuestion;
+use crate::observe::points::{PointsQuestion, Surroundings};
 use crate::observe::sections::SectionCut;
 use crate::observe::surfaces::CarriersQuestion;
 use crate::ranks::{Ranks, bytes_of, combined, read};
@@ -33,6 +33,7 @@ pub(in crate::observe) enum Asked {
     Mean(MassMean),
     Front(FrontQuestion),
     Points(PointsQuestion),
+    Surroundings(PointsQuestion),
     Section(SectionCut),
     Carriers(CarriersQuestion),
     Near(Near),
@@ -49,6 +50,7 @@ impl Asked {
             Asked::Mean(question) => said(question, own, ranks),
             Asked::Front(question) => said(question, own, ranks),
             Asked::Points(question) => said(&question.points(), own, ranks),
+            Asked::Surroundings(question) => said(&Surroundings(&question.points()), own, ranks),
             Asked::Section(question) => said(question, own, ranks),
             Asked::Carriers(question) => said(question, own, ranks),
             Asked::Near(question) => said(question, own, ranks),
