@@ -63,6 +63,8 @@ pub struct Report {
     pub time_step: f64,
     /// Steps of that length to the end.
     pub steps: u64,
+    /// Whether dynamic relaxation ends the run as soon as the bodies are at rest, mostly long before.
+    pub ends_at_rest: bool,
     /// The machine that the expected time is for.
     pub machine: MachineSpeed,
     /// Expected wall time [s].
@@ -139,6 +141,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         time_step,
         // A last step that is only round-off is none.
         steps: (scene.time.end / time_step * (1.0 - 1e-12)).ceil() as u64,
+        ends_at_rest: scene.time.relax.is_some(),
         machine: MachineSpeed::default(),
         wall_time: 0.0,
         rules: rules::rule_reports(scene, &boxes),

@@ -44,7 +44,8 @@ impl Display for Report {
         let (rate, plural) = (short(rate), if cores == 1 { "" } else { "s" });
         writeln!(
             f,
-            "wall time    {} (at {rate} million particle-steps/s a core, {cores} core{plural})",
+            "wall time    {}{} (at {rate} million particle-steps/s a core, {cores} core{plural})",
+            if self.ends_at_rest { "until the bodies are at rest, and no more than " } else { "" },
             duration(self.wall_time)
         )?;
         if self.rigid_contacts > 0 {

@@ -1,6 +1,6 @@
 //! Wall time of a run: how fast it goes and how long it will take.
 
-use crate::door::View;
+use crate::door::{RelaxationState, View};
 use crate::observe::{Memory, OutputError, Performance, Timing};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
@@ -18,8 +18,10 @@ pub struct Progress {
     pub particles: usize,
     /// Particles times steps over wall time, outputs included [1/s].
     pub particle_steps_per_second: f64,
-    /// Wall time left at the present pace [s]; infinite while there is no pace yet.
+    /// Wall time left at the present pace [s]; infinite while there is no pace yet, and where the run ends at rest.
     pub eta: f64,
+    /// How far dynamic relaxation has come, which ends at rest and hardly ever at `end`.
+    pub relaxation: Option<RelaxationState>,
     /// What happens now, which is no cause for worry.
     pub news: Vec<String>,
     /// What the user should know now and need not ask for: contact that is not resolved, results that are doubtful.
@@ -103,14 +105,16 @@ impl RunClock {
     pub(super) fn progress(&self, view: &dyn View, end: f64) -> Progress {
         let wall = self.start.elapsed().as_secs_f64();
         let time = view.time();
-        let done = time - self.first_time;
+        let (done, relaxation) = (time - self.first_time, view.relaxation());
+        let has_pace = done > 0.0 && relaxation.is_none();
         Progress {
             time,
             end,
             steps: view.steps(),
             particles: view.particles(),
             particle_steps_per_second: self.rate(view, self.before.wall_time + wall),
-            eta: if done > 0.0 { wall * (end - time) / done } else { f64::INFINITY },
+            eta: if has_pace { wall * (end - time) / done } else { f64::INFINITY },
+            relaxation,
             news: Vec::new(),
             notes: Vec::new(),
         }
