@@ -25,6 +25,11 @@ impl<T: Real> NodeDamping<T> {
         NodeDamping { viscous: T::of(scene.viscous), local: T::of(scene.local) }
     }
 
+    /// With another rate of the viscous one beside its own [1/s].
+    pub fn with_viscous(self, rate: T) -> Self {
+        NodeDamping { viscous: self.viscous + rate, ..self }
+    }
+
     /// Whether it does anything.
     pub fn acts(&self) -> bool {
         self.viscous > T::ZERO || self.local > T::ZERO

@@ -241,7 +241,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
         self.end_step(T::of(dt)).map_err(|fault| self.error(&fault))?;
         self.book_gravity(T::of(dt), weights);
         self.count_disorder();
-        self.relax();
+        self.relax(dt);
         self.state.time += dt;
         self.state.steps += 1;
         self.remove_leavers();

@@ -2,8 +2,18 @@
 //!
 //! Bodies that are let go swing about the state at rest, and pass it when they are fastest. Where their kinetic energy
 //! has passed a peak they are stopped, and let go again from there (Cundall 1982, Adaptive density-scaling for
-//! time-explicit calculations; Barnes 1999, Int. J. Space Struct. 14). What that takes from them the ledger counts as
-//! damping.
+//! time-explicit calculations; Barnes 1999, Int. J. Space Struct. 14). Between two stops a viscous force slows them down
+//! at a rate that falls with the time since the last one:
+//!
+//! ```text
+//! alpha = r / t,   r = 0.1
+//! ```
+//! as in the accelerated descents of Nesterov (Su, Boyd & Candes 2016, J. Mach. Learn. Res. 17, where r = 3 is proved
+//! for all convex energies, and to begin anew where the speed falls to be quick). What is fast, such as noise of
+//! particles that change their cells, so dies out after a stop and does not call for the next one; what is slow has
+//! its way. Steps to rest at 1e-3 with r = 0, 0.1, 0.3, 1: a hanging bar 347, 200, 328, 464; a cantilever 10530,
+//! 16201, 19675, 21923; a bar of four cells in torsion 7310, 6823, 6861, 6727. A thick cylinder of eight cells comes
+//! to rest with 0.1 and not without. What all of this takes from the bodies the ledger counts as damping.
 
 use super::Engine;
 use crate::basis::Basis;
@@ -15,6 +25,9 @@ use serde::{Deserialize, Serialize};
 use std::sync::PoisonError;
 use std::time::Instant;
 
+/// r
+const RATE: f64 = 0.1;
+
 /// How far the bodies are from rest.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct RelaxationProgress {
@@ -24,6 +37,9 @@ pub struct RelaxationProgress {
     pub kinetic: [f64; 2],
     /// How often they were stopped.
     pub peaks: u64,
+    /// Time since they were stopped, or began [s].
+    #[serde(default)]
+    pub since: f64,
     /// Whether they are at rest.
     pub at_rest: bool,
 }
@@ -31,7 +47,7 @@ pub struct RelaxationProgress {
 impl Default for RelaxationProgress {
     /// Nothing is known yet.
     fn default() -> Self {
-        RelaxationProgress { residual: 1.0, kinetic: [0.0; 2], peaks: 0, at_rest: false }
+        RelaxationProgress { residual: 1.0, kinetic: [0.0; 2], peaks: 0, since: 0.0, at_rest: false }
     }
 }
 
@@ -51,10 +67,19 @@ impl RelaxationProgress {
 }
 
 impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
-    /// Stops the bodies where their kinetic energy has passed a peak, and says whether they are at rest.
-    pub(super) fn relax(&mut self) {
+    /// Rate of the viscous damping in a step, beside that of the scene: none where nothing is to come to rest [1/s].
+    pub(super) fn relaxing_rate(&self, dt: T) -> T {
+        match self.settings.time.relax {
+            Some(_) => T::of(RATE) / (T::of(self.state.relaxation.since) + dt),
+            None => T::ZERO,
+        }
+    }
+
+    /// Stops the bodies where their kinetic energy has passed a peak after a step, and says whether they are at rest.
+    pub(super) fn relax(&mut self, dt: f64) {
         let Some(scene::Relaxation { residual }) = self.settings.time.relax else { return };
         let start = Instant::now();
+        self.state.relaxation.since += dt;
         let [now, before] = self.state.relaxation.kinetic;
         if now < before {
             self.stop();
@@ -97,5 +122,6 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         self.state.relaxation.peaks += 1;
         self.state.relaxation.kinetic = [0.0; 2];
+        self.state.relaxation.since = 0.0;
     }
 }

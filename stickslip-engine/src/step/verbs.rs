@@ -270,7 +270,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 
     /// Damps the velocities whose change the particles take, see [`crate::damping`]; what mirrors repeat, too.
     pub(super) fn damp(&mut self, dt: T) {
-        let damping = self.settings.damping;
+        let damping = self.settings.damping.with_viscous(self.relaxing_rate(dt));
         if !damping.acts() {
             return;
         }

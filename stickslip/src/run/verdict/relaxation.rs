@@ -12,8 +12,7 @@ impl Check for RelaxationCheck {
     }
 
     fn advice(&self, _: &Scene) -> &'static str {
-        "try damping.local = 0.3 where there were thousands of peaks, a later time.end, a larger time.relax.residual; \
-         what nothing holds never comes to rest"
+        "try a later time.end, a larger time.relax.residual; what nothing holds never comes to rest"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
