@@ -60,6 +60,9 @@ pub mod contact;
 // The step and its verbs.
 pub mod step;
 
+/// What of a step knows the shape functions.
+pub mod kernels;
+
 // A simulation that several ranks share, as the first of them sees it.
 pub mod shared;
 

@@ -341,29 +341,35 @@ fn deformed_area<T: Real, const D: usize>(particle: &Particle<T, D>, point: &Par
     })
 }
 
-/// The nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i [-].
+/// How [`nodes_of`] is called.
+pub type NodesOf<T, const D: usize> =
+    fn(&Lattice<T, D>, (&Particle<T, D>, &Matrix<T>), &PartPoint, &mut dyn FnMut([i32; D], [T; 2]));
+
+/// Takes the nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i [-].
 pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
     (particle, edges): (&Particle<T, D>, &Matrix<T>),
     point: &PartPoint,
-) -> impl Iterator<Item = ([i32; D], [T; 2])> + use<T, D, B> {
+    take: &mut dyn FnMut([i32; D], [T; 2]),
+) {
     let x = lattice.cells(particle.position);
     let half = lattice.half_sides(extent(edges));
     let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
     let r = Vector::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
     let table = B::Table::<T, D>::new(&r, &(*edges * lattice.per_cell));
     let arm = arm::<T, D>(particle, point) * lattice.per_cell;
-    offsets::<D>(B::WIDTH).zip(0..).map(move |(offset, n)| {
+    for (offset, n) in offsets::<D>(B::WIDTH).zip(0..) {
         let node = std::array::from_fn(|i| axes[i].base + offset[i] as i32);
         if B::CORNERS {
             let own = table.weight(n);
-            return (node, [own, (0..D).fold(own, |sum, i| sum + table.slope(n, i) * arm[i])]);
+            take(node, [own, (0..D).fold(own, |sum, i| sum + table.slope(n, i) * arm[i])]);
+            continue;
         }
         let weight = |i: usize| axes[i].shape.weight[offset[i]];
         let except =
             |skip: usize| (0..D).filter(|&i| i != skip).fold(T::ONE, |product, i| product * weight(i));
         let beside = |i: usize| except(i) * axes[i].shape.slope(offset[i]) * arm[i];
         let own = (0..D).fold(T::ONE, |product, i| product * weight(i));
-        (node, [own, (0..D).fold(own, |sum, i| sum + beside(i))])
-    })
+        take(node, [own, (0..D).fold(own, |sum, i| sum + beside(i))]);
+    }
 }

@@ -28,4 +28,5 @@ pub use pair::{Change, ContactUse, Pair, SurfaceEstimate, TimeStep};
 pub use reference_map::ReferenceMap;
 pub use rules::{Rule, Rules};
 pub use solve::{Impulse, Impulses, Solve};
+pub use surroundings::{SumAround, sum_around};
 pub use survey::{BodyShare, Encounter, Facing, LawInputs, Near, SharedNode, Survey, SurveyPart, room};

@@ -3,12 +3,12 @@
 use super::law::{NearParticle, law};
 use super::surroundings::{Chunk, MaterialSums, Wanted, behind};
 use super::{Pair, Rules, SurfaceEstimate, TimeStep};
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::grid::{
     ActiveBlocks, Field, Lattice, Node, Nodes, SIDE, SharedBlock, next_of, node_at, nodes_per_block,
 };
+use crate::kernels::Kernels;
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
 use crate::tensor::{Real, Symmetric, Vector};
@@ -50,7 +50,7 @@ pub struct Facing<T, const D: usize> {
 }
 
 /// What a law may look at to tell how two bodies face each other.
-pub struct LawInputs<'a, T, const D: usize> {
+pub struct LawInputs<'a, T: 'static, const D: usize> {
     /// Everything near.
     pub near: &'a Near<'a, T, D>,
     /// All bodies at the node.
@@ -181,7 +181,7 @@ fn rigid_trace<T: Real>() -> T {
 }
 
 /// What a survey looks at.
-pub struct Near<'a, T, const D: usize> {
+pub struct Near<'a, T: 'static, const D: usize> {
     /// The blocks.
     pub active: &'a ActiveBlocks<D>,
     /// The bodies.
@@ -196,8 +196,8 @@ pub struct Near<'a, T, const D: usize> {
     pub rules: &'a Rules<T>,
     /// Step [s], if the nodes have the forces of the stress already.
     pub ahead: Option<T>,
-    /// Nodes that a particle reaches along an axis, at most.
-    pub width: usize,
+    /// What knows the shape functions.
+    pub kernels: &'static Kernels<T, D>,
     /// Who looks.
     pub processor: Processor,
 }
@@ -211,7 +211,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
 
 impl<T: Laned, const D: usize> Near<'_, T, D> {
     /// Surveys every node that two or more bodies share.
-    pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
+    pub fn survey(&self, survey: &mut Survey<T, D>) {
         let Survey { parts, count, scratches } = survey;
         *count = self.active.shared_blocks.len().div_ceil(BLOCKS);
         parts.resize_with(parts.len().max(*count), SurveyPart::default);
@@ -224,11 +224,11 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             part.sites.clear();
             part.sides.clear();
             part.encounters.clear();
-            shared_blocks.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut scratch, part));
+            shared_blocks.iter().for_each(|meeting| self.survey_block(meeting, &mut scratch, part));
         });
     }
 
-    fn survey_block<B: Basis<T>>(
+    fn survey_block(
         &self,
         meeting: &SharedBlock<D>,
         scratch: &mut Scratch<T, D>,
@@ -260,7 +260,12 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             let first = sums.len();
             next.push(first);
             sums.resize(first + present.count_ones() as usize, MaterialSums::EMPTY);
-            self.sum_around::<B>((body(slot), block), (*present, sought), (&mut sums[first..], chunks));
+            (self.kernels.sum_around)(
+                self,
+                (body(slot), block),
+                (*present, sought),
+                (&mut sums[first..], chunks),
+            );
         }
         let mut nodes = shared;
         while let Some(local) = next_of(&mut nodes) {

@@ -3,7 +3,6 @@
 use super::Engine;
 use super::pass::FaultReport;
 use super::state::Workspace;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::contact::{BlockSums, Change, Impulse, Impulses, Span};
 use crate::exact::ExactSum;
@@ -87,7 +86,7 @@ pub(super) enum Interpolated {
     Twice,
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Books what the step did, and measures how far from balance its forces are. Nothing of it changes the step.
     ///
     /// Works are force times the mean of u^0 and u^1, the velocities interpolated before and after. Where the step does

@@ -9,7 +9,6 @@ use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
-use crate::basis::{Basis, Cpdi, Cubic, Gimp, Linear};
 use crate::body::{Body, BodyHere, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
@@ -19,6 +18,7 @@ use crate::door::{NotTakenUp, SavedState, Simulation};
 use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress;
+use crate::kernels::Kernels;
 use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
@@ -33,7 +33,6 @@ use crate::scene::{
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
 use std::collections::HashSet;
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// The simulation of a scene.
@@ -128,7 +127,7 @@ pub(crate) trait Shareable: Simulation {
     ) -> Result<(), NotTakenUp>;
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
+impl<T: Laned, const D: usize> Shareable for Engine<T, D> {
     fn counts_of_all(&self) -> Vec<usize> {
         Engine::counts_of_all(self)
     }
@@ -154,33 +153,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
 
 /// The simulation with these particles.
 fn build_for(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Box<dyn Shareable>, Problem> {
-    match (scene.dimension, scene.precision) {
+    Ok(match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
-            with_basis::<f64, 2>(scene, path, keeping)
+            Box::new(Engine::<f64, 2>::of(scene, path, keeping)?)
         }
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
-            with_basis::<f32, 2>(scene, path, keeping)
+            Box::new(Engine::<f32, 2>::of(scene, path, keeping)?)
         }
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, keeping),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, keeping),
-    }
-}
-
-fn with_basis<T: Laned, const D: usize>(
-    scene: &Scene,
-    path: ParticleLoop,
-    keeping: Keeping,
-) -> Result<Box<dyn Shareable>, Problem> {
-    Ok(match scene.discretization.basis {
-        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::of(scene, path, keeping)?),
-        // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::of(scene, path, keeping)?),
-        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::of(scene, path, keeping)?),
-        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::of(scene, path, keeping)?),
+        (Dimension::Space, Precision::Double) => Box::new(Engine::<f64, 3>::of(scene, path, keeping)?),
+        (Dimension::Space, Precision::Single) => Box::new(Engine::<f32, 3>::of(scene, path, keeping)?),
     })
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// The simulation of a scene of this dimension and precision.
     ///
     /// # Errors
@@ -236,6 +221,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         filled: &dyn Fn(usize) -> Option<Filled>,
     ) -> Result<Self, Problem> {
         let cell = scene.discretization.cell;
+        let kernels = Kernels::<T, D>::of(scene.discretization.basis);
         let half_side = match scene.discretization.basis {
             BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi => None,
             BasisKind::Spline => Some(0.5),
@@ -282,7 +268,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                     motion: begun.motion.map(Box::new),
                     whole: whole::<D>(scene, number),
                     thickness: scene.dimension.thickness(),
-                    gyration: rotation::gyration::<T, B>(cell, half_side),
+                    gyration: rotation::gyration(kernels.box_spread, cell, half_side),
                     volume_change: scene.materials[body.material].volume_change,
                 })
             };
@@ -365,7 +351,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             among: None,
             kinds,
             watch: Stopwatch::default(),
-            basis: PhantomData,
+            kernels,
         })
     }
 }

@@ -6,7 +6,6 @@
 use super::Engine;
 use super::build::spin;
 use super::loads::{NOWHERE, find_carriers};
-use crate::basis::Basis;
 use crate::body::{Body, Particle, TotalSums, Totals, TurningSums};
 use crate::column::{HALF_EDGES, INITIAL_STRETCH};
 use crate::door::{RestoreError, SavedBody, SavedColumn, SavedState};
@@ -61,7 +60,7 @@ struct FirstParticle {
     places: [[f64; 3]; 2],
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Lets bodies begin as those of the same name were in another run.
     ///
     /// # Errors

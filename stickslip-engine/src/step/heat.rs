@@ -9,7 +9,6 @@
 //! with half of the growth of the last step and half of that of the next one, by the state between them.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
@@ -35,7 +34,7 @@ pub struct Warmed<T> {
     work: f64,
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Brings what loads heat to the temperature at the end of a step of `dt` from now on, and books what that does.
     pub(super) fn heat(&mut self, dt: T) {
         let (time, room) = (self.state.time + dt.f64(), &mut self.workspace.warmed);

@@ -1,10 +1,12 @@
 //! A pass as the equations read, one particle and one node after the other: an oracle for the tests.
 
-use super::pass::{FaultKind, Pass, Visit, escaped};
+use super::pass::{FaultKind, Pass, Visit};
 use crate::basis::Basis;
 use crate::body::Particle;
 use crate::clock::signal;
 use crate::damping::BulkViscosity;
+use crate::grid::{addressable, window_side};
+use crate::kernels::{home, is_outside};
 use crate::lanes::Any;
 use crate::material::Motion;
 use crate::particles::deformation_entries;
@@ -12,17 +14,18 @@ use crate::scene::Transfer;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{Share, Stencil, extent, has_spin};
 
-impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
+impl<T: Real, const D: usize> Visit<'_, T, D> {
     /// Takes the tile's particles one by one through the pass.
     ///
     /// # Safety
     /// Nobody else may use the tile's nodes and particles meanwhile.
-    pub unsafe fn take_naively(&mut self) {
+    pub unsafe fn take_naively<B: Basis<T>>(&mut self) {
+        let side = window_side(B::WIDTH);
         // SAFETY: the caller's.
         unsafe {
-            self.open::<Any>();
-            self.naively();
-            self.close::<Any>();
+            self.open::<Any>(side);
+            self.naively::<B>();
+            self.close::<Any>(side);
         }
     }
 
@@ -30,11 +33,11 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     ///
     /// # Safety
     /// Nobody else may use the tile's particles meanwhile.
-    unsafe fn naively(&mut self) {
+    unsafe fn naively<B: Basis<T>>(&mut self) {
         for (cell, ends) in self.cells.windows(2).enumerate() {
             for place in ends[0]..ends[1] {
                 // SAFETY: the caller's.
-                unsafe { self.naive_one(self.order[place as usize], cell) };
+                unsafe { self.naive_one::<B>(self.order[place as usize], cell) };
             }
         }
     }
@@ -43,7 +46,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     ///
     /// # Safety
     /// Nobody else may use the particle meanwhile.
-    unsafe fn naive_one(&mut self, index: u32, cell: usize) {
+    unsafe fn naive_one<B: Basis<T>>(&mut self, index: u32, cell: usize) {
         // SAFETY: the caller's.
         let mut particle = unsafe { self.columns.get(index as usize) };
         // SAFETY: as above.
@@ -75,7 +78,7 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         }
     }
 
-    fn change_naively(
+    fn change_naively<B: Basis<T>>(
         &mut self,
         (particle, index): (&mut Particle<T, D>, usize),
         stencil: &Stencil<T, D, B>,
@@ -189,7 +192,8 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             }
             // SAFETY: as above.
             let half_sides = extent(&unsafe { self.columns.edges(index) });
-            if escaped::<T, D, B>((position, half_sides), lattice, domain) {
+            if is_outside(position, domain) || !addressable(home::<T, D, B>(lattice, (position, half_sides)))
+            {
                 return Err(FaultKind::Escaped);
             }
         }
@@ -221,7 +225,11 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         }
     }
 
-    fn scatter_naively(&mut self, (particle, index): (&Particle<T, D>, usize), stencil: &Stencil<T, D, B>) {
+    fn scatter_naively<B: Basis<T>>(
+        &mut self,
+        (particle, index): (&Particle<T, D>, usize),
+        stencil: &Stencil<T, D, B>,
+    ) {
         let half_step = if self.pass.transfer == Transfer::Apic { T::ZERO } else { T::HALF * self.pass.dt };
         let turning = skew(&particle.spin);
         let gradient = turning + turning * turning * half_step + self.strain_rate(index).matrix();

@@ -1,16 +1,14 @@
 //! One pass over particles: what it does to each of them, and who does it.
 
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::damping::BulkViscosity;
-use crate::grid::{Disjoint, Lattice, Node, NodeSums, Sought, Tile, Window, addressable, window_side};
+use crate::grid::{Disjoint, Lattice, Node, NodeSums, Sought, Tile, Window};
 use crate::lanes::{Machine, Processor};
 use crate::particles::Columns;
 use crate::scene::Transfer;
 use crate::tensor::{Real, Vector};
 use crate::transfer::{Share, filters};
 use serde::{Deserialize, Serialize};
-use std::marker::PhantomData;
 
 /// Who does the work on particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,7 +144,7 @@ impl<T: Real> Found<T> {
 }
 
 /// The particles of a tile and what a pass needs to know of them.
-pub struct Visit<'a, T, const D: usize, B> {
+pub struct Visit<'a, T, const D: usize> {
     /// The pass.
     pub pass: &'a Pass<T, D>,
     /// The tile.
@@ -179,14 +177,9 @@ pub struct Visit<'a, T, const D: usize, B> {
     pub damped: f64,
     /// What it found.
     pub found: Found<T>,
-    /// Shape functions.
-    pub basis: PhantomData<B>,
 }
 
-impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
-    /// Nodes along a side of the window.
-    pub(super) const WINDOW: usize = window_side(B::WIDTH);
-
+impl<T: Real, const D: usize> Visit<'_, T, D> {
     /// Takes note of what is wrong with a particle.
     pub(super) fn find_fault(&mut self, particle: u32, kind: FaultKind) {
         let (body, particle) = (self.tile.body, particle as usize);
@@ -194,24 +187,25 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
         self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
     }
 
-    /// Takes from the field what the pass seeks, and makes room for what it scatters.
+    /// Takes from the field what the pass seeks, and makes room for what it scatters, in a window of so many nodes along
+    /// a side.
     ///
     /// # Safety
     /// Nobody may write to the tile's nodes meanwhile.
     #[inline(always)]
-    pub unsafe fn open<M: Machine<T>>(&mut self) {
+    pub unsafe fn open<M: Machine<T>>(&mut self, side: usize) {
         if self.pass.gathers() || !self.means.is_empty() {
             // SAFETY: the caller's.
             unsafe {
                 let field = (self.nodes, self.filtered, self.means);
-                self.window.load::<M>(field, self.tile, Self::WINDOW, self.pass.sought());
+                self.window.load::<M>(field, self.tile, side, self.pass.sought());
             }
         }
         if self.pass.verbs.scatter.is_some() {
-            self.window.clear(Self::WINDOW);
-            self.nodes.fetch(self.tile, Self::WINDOW);
+            self.window.clear(side);
+            self.nodes.fetch(self.tile, side);
         } else if let Some(next) = self.next {
-            self.nodes.fetch(next, Self::WINDOW);
+            self.nodes.fetch(next, side);
         }
     }
 
@@ -220,34 +214,13 @@ impl<T: Real, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
     /// # Safety
     /// Nobody else may use the tile's nodes meanwhile.
     #[inline(always)]
-    pub unsafe fn close<M: Machine<T>>(&mut self) {
+    pub unsafe fn close<M: Machine<T>>(&mut self, side: usize) {
         if self.pass.verbs.scatter.is_some() {
             match &mut self.kept {
                 Some(kept) => kept.copy_from_slice(&self.window.sums[..kept.len()]),
                 // SAFETY: the caller's.
-                None => unsafe { self.window.add_to::<M>(self.nodes, self.tile, Self::WINDOW) },
+                None => unsafe { self.window.add_to::<M>(self.nodes, self.tile, side) },
             }
         }
     }
-}
-
-/// Base node of a particle: the first that it reaches along each axis.
-pub fn home<T: Real, const D: usize, B: Basis<T>>(
-    lattice: &Lattice<T, D>,
-    (position, half_sides): (Vector<T, D>, Vector<T, D>),
-) -> [i32; D] {
-    let (x, half) = (lattice.cells(position), lattice.half_sides(half_sides));
-    std::array::from_fn(|i| B::reach(x[i], half[i]).floor())
-}
-
-/// Whether a particle at a position, with a box of these half sides, is outside the domain, or so far away that its
-/// cell has no number.
-pub fn escaped<T: Real, const D: usize, B: Basis<T>>(
-    (position, half_sides): (Vector<T, D>, Vector<T, D>),
-    lattice: &Lattice<T, D>,
-    domain: Option<[Vector<T, D>; 2]>,
-) -> bool {
-    let outside =
-        domain.is_some_and(|[min, max]| (0..D).any(|i| position[i] < min[i] || position[i] > max[i]));
-    outside || !addressable(home::<T, D, B>(lattice, (position, half_sides)))
 }

@@ -6,7 +6,6 @@
 //! damping.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
 use crate::scene;
@@ -49,7 +48,7 @@ impl RelaxationProgress {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Stops the bodies where their kinetic energy has passed a peak, and says whether they are at rest.
     pub(super) fn relax(&mut self) {
         let Some(scene::Relaxation { residual }) = self.settings.time.relax else { return };

@@ -1,7 +1,6 @@
 //! Laws that answer for all particles of a body at once: what they are asked, by the particles' numbers.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::door::StepError;
 use crate::lanes::Laned;
@@ -27,7 +26,7 @@ pub(super) fn over_arrays<T: Real, const D: usize>(
     custom.law().over_arrays().filter(|_| !body.is_rigid()).map(|law| (custom, law))
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Whether a body has such a law.
     pub(super) fn has_laws_over_arrays(&self) -> bool {
         !self.settings.together.is_empty()

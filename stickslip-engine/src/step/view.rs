@@ -6,7 +6,6 @@ use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
 use super::state::{ByBody, of_body};
 use super::walls::WallSums;
-use crate::basis::Basis;
 use crate::body::{Body, Particle, Totals};
 use crate::clock::{Fastest, fastest_motion};
 use crate::column::{ColumnDescription, Kind};
@@ -105,7 +104,7 @@ impl<T: Laned, const D: usize> ColumnSource for SnapshotRows<'_, T, D> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// What the particles of each body add up to, by body, summed once a step for whoever asks: on the first of several
     /// ranks of all, on the others of those of which they have particles.
     pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
@@ -162,7 +161,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
+impl<T: Laned, const D: usize> View for Engine<T, D> {
     fn time(&self) -> f64 {
         self.state.time
     }

@@ -2,7 +2,6 @@
 
 use super::Engine;
 use super::build::spin;
-use crate::basis::Basis;
 use crate::body::Totals;
 use crate::door::{NoColumn, View, WRITABLE, WriteError, WrittenValues};
 use crate::lanes::Laned;
@@ -20,7 +19,7 @@ struct Holding {
     angular_momentum: [f64; 3],
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Gives the particles of a body other values in a column, see [`crate::door::Simulation::write`], and books what
     /// that changed.
     ///

@@ -1,6 +1,5 @@
 //! Particles that turn: their velocities around them, and what they weigh against turning.
 
-use crate::basis::Basis;
 use crate::body::Gyration;
 use crate::tensor::{Matrix, Number, Real, Vector};
 
@@ -49,13 +48,14 @@ pub fn moment<N: Number, const D: usize>(moments: &Matrix<N>) -> Vector<N, 3> {
     if D == 2 { Vector([N::ZERO, N::ZERO, z]) } else { Vector([m[2][1] - m[1][2], m[0][2] - m[2][0], z]) }
 }
 
-/// What particles of a basis on cells of a size weigh against turning; `half_side` as in [`crate::grid::Lattice`].
-pub fn gyration<T: Real, B: Basis<T>>(cell: f64, half_side: Option<f64>) -> Gyration<T> {
+/// What particles weigh against turning, by a basis with this [`Basis::BOX_SPREAD`](crate::basis::Basis::BOX_SPREAD) on
+/// cells of a size; `half_side` as in [`crate::grid::Lattice`].
+pub fn gyration<T: Real>(box_spread: f64, cell: f64, half_side: Option<f64>) -> Gyration<T> {
     if let Some(half) = half_side {
-        let square = cell * cell / 3.0 + 2.0 * half * half * B::BOX_SPREAD * cell * cell;
+        let square = cell * cell / 3.0 + 2.0 * half * half * box_spread * cell * cell;
         return Gyration { cell: T::of(square), share: T::ZERO };
     }
-    Gyration { cell: T::of(cell * cell / 3.0), share: T::of(2.0 * B::BOX_SPREAD) }
+    Gyration { cell: T::of(cell * cell / 3.0), share: T::of(2.0 * box_spread) }
 }
 
 #[cfg(test)]

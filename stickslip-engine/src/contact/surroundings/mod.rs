@@ -32,51 +32,53 @@ pub fn behind<const D: usize>(wall: &Wall, block: [i32; D], depth: i32) -> Nodes
 /// For each axis, the mirror that particles are seen in, if any.
 pub type Mirrors<'a, const D: usize> = [Option<&'a Wall>; D];
 
-impl<T: Laned, const D: usize> Near<'_, T, D> {
-    /// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
-    /// `chunks` is room to work in. Where the grid repeats, particles around every image of the block are added.
-    pub fn sum_around<B: Basis<T>>(
-        &self,
-        (body, block): (usize, [i32; D]),
-        (wanted, sought): (Nodes, Wanted),
-        (sums, chunks): (&mut [MaterialSums<T, D>], &mut Vec<Chunk<D>>),
-    ) {
-        let mut walls = self.boundary.walls.iter().filter(|wall| self.reflects::<B>(wall, block));
-        let near: [Option<&Wall>; 6] = std::array::from_fn(|_| walls.next());
-        // No mirror, and every mirror and combination of mirrors whose images reach nodes of the block.
-        for combination in 0..1_u32 << near.iter().flatten().count() {
-            let mut mirrors: Mirrors<D> = [None; D];
-            let chosen = near.iter().flatten().enumerate().filter(|(i, _)| combination >> i & 1 == 1);
-            if chosen.into_iter().all(|(_, &wall)| mirrors[wall.axis].replace(wall).is_none()) {
-                for image in self.active.images_of(body) {
-                    let around = Around {
-                        near: self,
-                        body,
-                        block: std::array::from_fn(|i| block[i] + image[i]),
-                        image: *image,
-                        wanted,
-                        sought,
-                        mirrors,
-                        chunks: &mut *chunks,
-                        sums: &mut *sums,
-                        basis: PhantomData::<B>,
-                    };
-                    T::run(self.processor, around);
-                }
+/// How [`sum_around`] is called.
+pub type SumAround<T, const D: usize> =
+    fn(&Near<'_, T, D>, (usize, [i32; D]), (Nodes, Wanted), (&mut [MaterialSums<T, D>], &mut Vec<Chunk<D>>));
+
+/// Adds a body's particles to the wanted nodes of a block: the sums of the n-th of them are `sums[n]`.
+/// `chunks` is room to work in. Where the grid repeats, particles around every image of the block are added.
+pub fn sum_around<T: Laned, const D: usize, B: Basis<T>>(
+    near: &Near<'_, T, D>,
+    (body, block): (usize, [i32; D]),
+    (wanted, sought): (Nodes, Wanted),
+    (sums, chunks): (&mut [MaterialSums<T, D>], &mut Vec<Chunk<D>>),
+) {
+    let mut walls = near.boundary.walls.iter().filter(|wall| reflects(wall, block, B::WIDTH as i32));
+    let mirrors_near: [Option<&Wall>; 6] = std::array::from_fn(|_| walls.next());
+    // No mirror, and every mirror and combination of mirrors whose images reach nodes of the block.
+    for combination in 0..1_u32 << mirrors_near.iter().flatten().count() {
+        let mut mirrors: Mirrors<D> = [None; D];
+        let chosen = mirrors_near.iter().flatten().enumerate().filter(|(i, _)| combination >> i & 1 == 1);
+        if chosen.into_iter().all(|(_, &wall)| mirrors[wall.axis].replace(wall).is_none()) {
+            for image in near.active.images_of(body) {
+                let around = Around {
+                    near,
+                    body,
+                    block: std::array::from_fn(|i| block[i] + image[i]),
+                    image: *image,
+                    wanted,
+                    sought,
+                    mirrors,
+                    chunks: &mut *chunks,
+                    sums: &mut *sums,
+                    basis: PhantomData::<B>,
+                };
+                T::run(near.processor, around);
             }
         }
     }
+}
 
-    /// Whether images of particles before a wall reach nodes of a block.
-    fn reflects<B: Basis<T>>(&self, wall: &Wall, block: [i32; D]) -> bool {
-        let near = if wall.inward > 0 { 0 } else { SIDE - 1 };
-        let depth = (block[wall.axis] * SIDE + near - wall.node) * wall.inward;
-        wall.face == Face::Symmetry && depth < B::WIDTH as i32
-    }
+/// Whether images of particles before a wall, which reach so many nodes along an axis, reach nodes of a block.
+fn reflects<const D: usize>(wall: &Wall, block: [i32; D], width: i32) -> bool {
+    let near = if wall.inward > 0 { 0 } else { SIDE - 1 };
+    let depth = (block[wall.axis] * SIDE + near - wall.node) * wall.inward;
+    wall.face == Face::Symmetry && depth < width
 }
 
 /// The particles of a body around a block, as they are or as they are seen in mirrors.
-struct Around<'a, T, const D: usize, B> {
+struct Around<'a, T: 'static, const D: usize, B> {
     near: &'a Near<'a, T, D>,
     body: usize,
     block: [i32; D],

@@ -6,6 +6,7 @@ use crate::boundary::{Boundary, reflect};
 use crate::contact::{Rules, rules};
 use crate::geometry::{MirroredShape, Shape};
 use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
+use crate::kernels::Kernels;
 use crate::lanes::Processor;
 use crate::material::{Isotropic, Material, NeoHookean, Thickness};
 use crate::particles::{ColumnStart, DOMAINS, OwnColumns, Particles, deformation_entries, stress_entries};
@@ -162,14 +163,14 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
             boundary: &boundary,
             rules: &rules,
             ahead: None,
-            width: B::WIDTH,
+            kernels: &const { Kernels::by::<B>() },
             processor,
         };
         for block in offsets::<D>(2).map(|block| block.map(|b| b as i32)) {
             let wanted = every_node(D) & 0x9e37_79b9_7f4a_7c15;
             let [everything, places] = [Wanted::Everything, Wanted::Places].map(|sought| {
                 let mut sums = vec![MaterialSums::EMPTY; wanted.count_ones() as usize];
-                near.sum_around::<B>((0, block), (wanted, sought), (&mut sums, &mut Vec::new()));
+                sum_around::<f64, D, B>(&near, (0, block), (wanted, sought), (&mut sums, &mut Vec::new()));
                 sums
             });
             let mut nodes = wanted;

@@ -66,7 +66,7 @@ pub fn group<
     S: Start,
     const WHOLE: bool,
 >(
-    visit: &mut Visit<'_, T, D, B>,
+    visit: &mut Visit<'_, T, D>,
     constants: &Constants<V, D>,
     members: &Members<'_, T, D, WHOLE>,
     (base, start): (Vector<V, D>, S),

@@ -10,19 +10,40 @@ mod members;
 #[cfg(test)]
 mod tests;
 
-use super::pass::{FaultKind, Visit};
+use super::pass::{FaultKind, ParticleLoop, Visit};
 use crate::basis::Basis;
 use crate::body::Gyration;
-use crate::grid::node_at;
+use crate::grid::{node_at, window_side};
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
 use crate::particles::follow_one_another;
 use crate::tensor::Vector;
 use crate::transfer::{CellGroup, Own, Start};
 use group::{Constants, every, group, splat};
 use members::{AHEAD, Copies, Members, fetch};
+use std::marker::PhantomData;
 
 /// A tile's particles, several at a time.
-pub struct SeveralAtATime<'a, 'b, T, const D: usize, B>(pub &'a mut Visit<'b, T, D, B>);
+pub struct SeveralAtATime<'a, 'b, T, const D: usize, B> {
+    visit: &'a mut Visit<'b, T, D>,
+    basis: PhantomData<B>,
+}
+
+/// Takes the tile's particles through the pass, by shape functions `B`.
+///
+/// # Safety
+/// Nobody else may use the tile's nodes and particles meanwhile.
+pub unsafe fn visit<T: Laned, const D: usize, B: Basis<T>>(path: ParticleLoop, visit: &mut Visit<'_, T, D>) {
+    match path {
+        ParticleLoop::Lanes(processor) => {
+            T::run(processor, SeveralAtATime { visit, basis: PhantomData::<B> })
+        }
+        // SAFETY: the caller's.
+        ParticleLoop::OneLane => unsafe { visit.take_one_by_one::<B>() },
+        #[cfg(test)]
+        // SAFETY: the caller's.
+        ParticleLoop::Naive => unsafe { visit.take_naively::<B>() },
+    }
+}
 
 impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D, B> {
     type Real = T;
@@ -30,52 +51,54 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {
-        let visit = self.0;
+        let (visit, side) = (self.visit, window_side(B::WIDTH));
         // SAFETY: the caller of this work keeps others away from the tile's nodes.
-        unsafe { visit.open::<M>() };
+        unsafe { visit.open::<M>(side) };
         if D == 3 {
-            visit.groups::<M, M::Wide>();
+            visit.groups::<M, M::Wide, B>();
         } else if visit.sparse() {
-            visit.groups_across_cells::<M, M::Quad>();
+            visit.groups_across_cells::<M, M::Quad, B>();
         } else {
             // In the plane a cell holds four particles as a rule.
-            visit.groups::<M, M::Quad>();
+            visit.groups::<M, M::Quad, B>();
         }
         // SAFETY: as above.
-        unsafe { visit.close::<M>() };
+        unsafe { visit.close::<M>(side) };
     }
 
     /// One particle at a time on x86-64: without AVX2 several bring little, and would double what is compiled.
     #[cfg(all(target_arch = "x86_64", not(portable_lanes)))]
     fn run_anywhere(self) {
         // SAFETY: the caller of this work keeps others away from the tile's nodes and particles.
-        unsafe { self.0.take_one_by_one() };
+        unsafe { self.visit.take_one_by_one::<B>() };
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
+impl<T: Laned, const D: usize> Visit<'_, T, D> {
     /// Takes the tile's particles one by one through the pass.
     ///
     /// # Safety
     /// Nobody else may use the tile's nodes and particles meanwhile.
-    pub unsafe fn take_one_by_one(&mut self) {
+    pub unsafe fn take_one_by_one<B: Basis<T>>(&mut self) {
+        let side = window_side(B::WIDTH);
         // SAFETY: the caller's.
-        unsafe { self.open::<Any>() };
+        unsafe { self.open::<Any>(side) };
         let (order, cells) = (self.order, self.cells);
         for (cell, ends) in cells.windows(2).enumerate() {
-            order[ends[0] as usize..ends[1] as usize].iter().for_each(|&index| self.one(index, cell));
+            order[ends[0] as usize..ends[1] as usize].iter().for_each(|&index| self.one::<B>(index, cell));
         }
         // SAFETY: the caller's.
-        unsafe { self.close::<Any>() };
+        unsafe { self.close::<Any>(side) };
     }
 
     /// Takes one particle whose home is a cell, in a group of one lane, and finds out what is wrong with it.
     #[inline(never)]
-    fn one(&mut self, index: u32, cell: usize) {
+    fn one<B: Basis<T>>(&mut self, index: u32, cell: usize) {
+        let side = window_side(B::WIDTH);
         let (columns, indices) = (self.columns, [index]);
-        let place = CellStart::new((self.tile.block, cell), Self::WINDOW);
+        let place = CellStart::new((self.tile.block, cell), side);
         let base = Vector::from_fn(|i| Pack([T::of(f64::from(place.base[i]))]));
-        let start = CellGroup::new::<D>(place.start, Self::WINDOW);
+        let start = CellGroup::new::<D>(place.start, side);
         let members = Members::in_a_row(&columns, &indices);
         let constants = self.constants::<Pack<T, 1>>();
         match group::<T, Pack<T, 1>, Any, D, B, _, true>(self, &constants, &members, (base, start)) {
@@ -114,8 +137,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 
     /// Cell by cell: particles of one cell share their nodes.
     #[inline(always)]
-    fn groups<M: Machine<T>, V: Lanes<Real = T>>(&mut self) {
-        let visit = self;
+    fn groups<M: Machine<T>, V: Lanes<Real = T>, B: Basis<T>>(&mut self) {
+        let (visit, side) = (self, window_side(B::WIDTH));
         let constants = visit.constants::<V>();
         let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
         let mut copies = Copies::EMPTY;
@@ -132,15 +155,15 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                     }
                 }
                 let in_a_row = follow_one_another(index);
-                let place = CellStart::new((visit.tile.block, cell), Self::WINDOW);
+                let place = CellStart::new((visit.tile.block, cell), side);
                 let base = Vector::from_fn(|i| V::splat(T::of(f64::from(place.base[i]))));
-                let start = CellGroup::new::<D>(place.start, Self::WINDOW);
-                match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
+                let start = CellGroup::new::<D>(place.start, side);
+                match visit.group::<M, V, B, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                     Ok(inside) => {
                         visit.left |= u64::from(!every::<V>(inside)) << cell;
                         visit.moved += outside(inside, index.len());
                     }
-                    Err(_) => index.iter().for_each(|&index| visit.one(index, cell)),
+                    Err(_) => index.iter().for_each(|&index| visit.one::<B>(index, cell)),
                 }
                 first += index.len();
             }
@@ -149,7 +172,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 
     /// One group, its particles side by side in memory or not.
     #[inline(always)]
-    fn group<M: Machine<T>, V: Lanes<Real = T>, S: Start>(
+    fn group<M: Machine<T>, V: Lanes<Real = T>, B: Basis<T>, S: Start>(
         &mut self,
         constants: &Constants<V, D>,
         (index, in_a_row): (&[u32], bool),
@@ -175,8 +198,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
 
     /// In the order of cells, as many particles at a time as there are lanes.
     #[inline(always)]
-    fn groups_across_cells<M: Machine<T>, V: Lanes<Real = T>>(&mut self) {
-        let visit = self;
+    fn groups_across_cells<M: Machine<T>, V: Lanes<Real = T>, B: Basis<T>>(&mut self) {
+        let (visit, side) = (self, window_side(B::WIDTH));
         let constants = visit.constants::<V>();
         let (columns, order, cells) = (visit.columns, visit.order, visit.cells);
         let mut copies = Copies::EMPTY;
@@ -199,7 +222,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
                 } else {
                     homes[lane] = homes[0];
                 }
-                let place = CellStart::new((visit.tile.block, homes[lane]), Self::WINDOW);
+                let place = CellStart::new((visit.tile.block, homes[lane]), side);
                 starts[lane] = place.start;
                 for (bases, base) in bases.iter_mut().zip(place.base) {
                     bases[lane] = T::of(f64::from(base));
@@ -207,16 +230,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Visit<'_, T, D, B> {
             }
             // SAFETY: as many numbers as any machine has lanes.
             let base = Vector::from_fn(|i| unsafe { V::load(bases[i].as_ptr()) });
-            let start = Own::new::<D>(starts, Self::WINDOW);
+            let start = Own::new::<D>(starts, side);
             let in_a_row = follow_one_another(index);
-            match visit.group::<M, V, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
+            match visit.group::<M, V, B, _>(&constants, (index, in_a_row), (base, start), &mut copies) {
                 Ok(inside) => {
                     visit.moved += outside(inside, index.len());
                     for (lane, &home) in homes.iter().enumerate().take(index.len()) {
                         visit.left |= u64::from(inside >> lane & 1 == 0) << home;
                     }
                 }
-                Err(_) => index.iter().zip(&homes).for_each(|(&index, &home)| visit.one(index, home)),
+                Err(_) => index.iter().zip(&homes).for_each(|(&index, &home)| visit.one::<B>(index, home)),
             }
             first += index.len();
         }
