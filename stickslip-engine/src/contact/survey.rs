@@ -1,16 +1,16 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::{NearParticle, law};
-use super::surroundings::{Chunk, MaterialSums, Wanted, behind};
 use super::{Pair, Rules, SurfaceEstimate, TimeStep};
+use crate::Kernels;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::grid::{
     ActiveBlocks, Field, Lattice, Node, Nodes, SIDE, SharedBlock, next_of, node_at, nodes_per_block,
 };
-use crate::kernels::Kernels;
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
+use crate::surroundings::{Chunk, MaterialSums, SeenBody, Surroundings, Wanted, behind};
 use crate::tensor::{Real, Symmetric, Vector};
 use crate::threads::each;
 use std::ops::Range;
@@ -228,6 +228,17 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         });
     }
 
+    /// A body as sums over its particles see it.
+    fn seen(&self, number: usize) -> SeenBody<T, D> {
+        let body = &self.bodies[number];
+        SeenBody {
+            number,
+            columns: body.particles.view(),
+            trusts_deformation: body.trusts_deformation(),
+            is_joined: std::array::from_fn(|axis| body.whole.is_joined(axis)),
+        }
+    }
+
     fn survey_block(
         &self,
         meeting: &SharedBlock<D>,
@@ -243,6 +254,12 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         if shared == 0 {
             return;
         }
+        let surroundings = Surroundings {
+            active: self.active,
+            lattice: self.lattice,
+            walls: &self.boundary.walls,
+            processor: self.processor,
+        };
         sums.clear();
         next.clear();
         moduli.clear();
@@ -250,7 +267,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             slots
                 .iter()
                 .map(|&slot| &self.bodies[body(slot)])
-                .map(|body| body.material.wave_modulus_at_rest(body.thickness)),
+                .map(|body| body.matter.material.wave_modulus_at_rest(body.matter.thickness)),
         );
         let by_place = |&[_, _, rule]: &[usize; 3]| law::<T, D>(self.rules.rule(rule).law).by_place();
         let places = self.ahead.is_some() && pairs.iter().all(by_place);
@@ -261,8 +278,8 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             next.push(first);
             sums.resize(first + present.count_ones() as usize, MaterialSums::EMPTY);
             (self.kernels.sum_around)(
-                self,
-                (body(slot), block),
+                &surroundings,
+                (&self.seen(body(slot)), block),
                 (*present, sought),
                 (&mut sums[first..], chunks),
             );
@@ -329,7 +346,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         for (&slot, present) in slots.iter().zip(&mut *present) {
             let owner = &self.bodies[self.active.slots[slot as usize].0 as usize];
             let trace = if owner.is_rigid() { rigid_trace::<T>() } else { trace::<T>() };
-            let least = trace * self.cell_volume() * owner.density;
+            let least = trace * self.cell_volume() * owner.matter.density;
             let mut nodes = *present & several & free;
             while let Some(local) = next_of(&mut nodes) {
                 if self.field.nodes[slot as usize * n + local].mass <= least {

@@ -1,13 +1,13 @@
 //! The verb that books what a step did: contact, the work of friction and of damping, and what forces lack to balance.
 
 use super::Engine;
-use super::pass::FaultReport;
 use super::state::Workspace;
 use crate::body::Body;
 use crate::contact::{BlockSums, Change, Impulse, Impulses, Span};
 use crate::exact::ExactSum;
 use crate::grid::{Node, locate, next_of, node_at, nodes_per_block};
 use crate::lanes::Laned;
+use crate::pass::FaultReport;
 use crate::ranks::{combined, joined};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};

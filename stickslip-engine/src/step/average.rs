@@ -14,9 +14,9 @@
 //! uniform dilatation and a uniform pressure stay as they are.
 
 use super::Engine;
-use super::pass::Verbs;
 use crate::grid::Node;
 use crate::lanes::Laned;
+use crate::pass::Verbs;
 use crate::transfer::Share;
 use std::time::Instant;
 

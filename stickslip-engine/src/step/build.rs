@@ -9,7 +9,8 @@ use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
-use crate::body::{Body, BodyHere, Particle};
+use crate::Compiled;
+use crate::body::{Body, BodyHere, Matter, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
@@ -18,7 +19,6 @@ use crate::door::{NotTakenUp, SavedState, Simulation};
 use crate::geometry::{Curved, Mirror, MirroredShape, ParticleSite, Shape, fill};
 use crate::grid::{Lattice, Periods, SIDE, locate};
 use crate::initial_stress;
-use crate::kernels::Kernels;
 use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
@@ -165,7 +165,7 @@ fn build_for(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Box<
     })
 }
 
-impl<T: Laned, const D: usize> Engine<T, D> {
+impl<T: Compiled<D>, const D: usize> Engine<T, D> {
     /// The simulation of a scene of this dimension and precision.
     ///
     /// # Errors
@@ -221,7 +221,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         filled: &dyn Fn(usize) -> Option<Filled>,
     ) -> Result<Self, Problem> {
         let cell = scene.discretization.cell;
-        let kernels = Kernels::<T, D>::of(scene.discretization.basis);
+        let kernels = T::kernels(scene.discretization.basis);
         let half_side = match scene.discretization.basis {
             BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi => None,
             BasisKind::Spline => Some(0.5),
@@ -261,15 +261,17 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let make = || -> Result<BodyHere<T, D>, Problem> {
                 Ok(BodyHere {
                     name: body.name.clone(),
-                    material: law.expect("it has been made"),
-                    density: T::of(scene.materials[body.material].density),
-                    expansion: T::of(scene.materials[body.material].thermal_expansion),
+                    matter: Matter {
+                        material: law.expect("it has been made"),
+                        density: T::of(scene.materials[body.material].density),
+                        expansion: T::of(scene.materials[body.material].thermal_expansion),
+                        thickness: scene.dimension.thickness(),
+                        gyration: rotation::gyration(kernels.box_spread, cell, half_side),
+                        volume_change: scene.materials[body.material].volume_change,
+                    },
                     particles: begun.particles(&filled.kept, heated.contains(&number))?,
                     motion: begun.motion.map(Box::new),
                     whole: whole::<D>(scene, number),
-                    thickness: scene.dimension.thickness(),
-                    gyration: rotation::gyration(kernels.box_spread, cell, half_side),
-                    volume_change: scene.materials[body.material].volume_change,
                 })
             };
             bodies.push(match kinds.as_mut().filter(|_| is_elsewhere) {
@@ -302,7 +304,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
                 walls: walls::<D>(scene),
                 damping: NodeDamping::new(&scene.damping),
-                viscosity: BulkViscosity::new(&scene.damping),
+                viscosity: BulkViscosity::new(scene.damping.bulk),
                 rules: Rules::new(scene),
                 loads,
                 joints: scene.joints.clone(),

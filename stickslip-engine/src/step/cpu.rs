@@ -6,10 +6,10 @@
 
 use super::Engine;
 use super::among::Among;
-use super::pass::{Found, Pass, Verbs, Visit};
 use crate::grid::{Disjoint, Field, NodeSums, Window, add_corner, window_side};
 use crate::lanes::Laned;
 use crate::particles::Columns;
+use crate::pass::{Found, Pass, Verbs, Visit};
 use crate::threads::each_range;
 use crate::transfer::Share;
 use std::sync::{Mutex, PoisonError};
@@ -93,7 +93,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let mut visit = Visit {
                 pass,
                 tile,
-                body,
+                matter: &body.matter,
+                numbers: body.particles.numbers(),
                 columns: room.columns[tile.place],
                 order: active.order_of(tile.body),
                 cells: active.cells_of(tile),

@@ -86,17 +86,17 @@ fn warm<T: Real, const D: usize>(
     let start = Vector::<T, D>::from_fn(|k| particles.line(ColumnStart::<D>::START + k)[i]);
     let moment = Moment { time, place: particle.position.space(), start: start.space(), ..Moment::default() };
     let after = T::of(temperature.at_moment(&moment));
-    let alpha = body.expansion.f64();
+    let alpha = body.matter.expansion.f64();
     let next = alpha * (after.f64() - before.f64()) / (1.0 + alpha * before.f64());
     let growth = 0.5 * (libm::log1p(strain.f64()) + libm::log1p(next));
     let mut work = 0.0;
     if growth != 0.0 {
-        let natural = particles.natural(i, body.expansion).expect("heated bodies have such a state");
+        let natural = particles.natural(i, body.matter.expansion).expect("heated bodies have such a state");
         let (elastic, _) = natural.elastic(&particle.deformation, T::ONE);
         // SAFETY: the particles are borrowed for reading.
         let history = unsafe { particles.view().history_of(i) };
-        let [energy, _] = body.material.energies(&elastic, &particle.stress, &history);
-        let stored = energy * (particle.mass / body.density / natural.volume);
+        let [energy, _] = body.matter.material.energies(&elastic, &particle.stress, &history);
+        let stored = energy * (particle.mass / body.matter.density / natural.volume);
         work = growth * (3.0 * stored.f64() - (particle.volume * particle.stress.trace()).f64());
     }
     Warmed { temperature: after, strain: T::of(next), work }

@@ -312,7 +312,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
             };
             if moved_by_nodes {
-                nodes_of(lattice, (&particle, &edges), point, &mut take);
+                nodes_of(lattice, (&particle, &edges), &point.arm, &mut take);
             }
             match ahead {
                 None => loaded.before = place_of(&particle, point),

@@ -183,7 +183,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                         found.push(([e as u32, number], node, pull.space()));
                     }
                 };
-                (self.kernels.nodes_of)(&self.settings.lattice, seen, point, &mut take);
+                (self.kernels.nodes_of)(&self.settings.lattice, seen, &point.arm, &mut take);
             }
         }
         if let Some(among) = &self.among {

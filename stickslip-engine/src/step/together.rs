@@ -6,7 +6,7 @@ use crate::door::StepError;
 use crate::lanes::Laned;
 use crate::material::{Custom, LawArrays, LawOverArrays, MOST_HISTORY, Material};
 use crate::particles::Particles;
-use crate::step::pass::{FaultKind, ParticleFault};
+use crate::pass::{FaultKind, ParticleFault};
 use crate::tensor::{Real, Symmetric};
 use std::time::Instant;
 
@@ -22,7 +22,7 @@ pub struct LawRoom {
 pub(super) fn over_arrays<T: Real, const D: usize>(
     body: &Body<T, D>,
 ) -> Option<(Custom<T>, &'static dyn LawOverArrays)> {
-    let Material::Custom(custom) = *body.material else { return None };
+    let Material::Custom(custom) = *body.matter.material else { return None };
     custom.law().over_arrays().filter(|_| !body.is_rigid()).map(|law| (custom, law))
 }
 

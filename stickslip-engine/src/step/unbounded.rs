@@ -263,7 +263,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let Unbounded { body, sites: lattice, .. } = &self.state.unbounded[i];
         let (number, volume) = (*body, T::of(lattice.volume()));
         let motion = self.without_bounds(number).expect(ONLY_RIGID);
-        let (pose, density) = (motion.pose(), self.state.bodies[number].density);
+        let (pose, density) = (motion.pose(), self.state.bodies[number].matter.density);
         let particle = |i: usize| Particle {
             position: Vector::of(sites[i]),
             velocity: Vector::of(motion.velocity_at(pose.now(sites[i]))),

@@ -5,15 +5,15 @@
 use super::Engine;
 use super::build::spin;
 use super::mechanism::Coupling;
-use super::pass::{FaultKind, FaultReport, Found, ParticleFault, ParticleLoop, Pass, Verbs};
 use super::state::{Disorder, Settings, Workspace};
+use crate::Kernels;
 use crate::body::Body;
 use crate::clock::signal_speed;
 use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Lattice, Node, locate, node_at, nodes_per_block};
-use crate::kernels::Kernels;
 use crate::lanes::{Laned, Processor};
+use crate::pass::{FaultKind, FaultReport, Found, ParticleFault, ParticleLoop, Pass, Verbs};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::{each, each_of};
 use crate::transfer::{SETTLES_EVERY, Share, begin_filter, end_filter, filter_once_more, filters, settles};

@@ -53,14 +53,14 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
         let gravity = self.settings.gravity.constant().unwrap_or_default();
-        let before = Holding::of_particles(&self.state.bodies[number].totals(), gravity);
+        let before = Holding::of_particles(&self.state.bodies[number].totals(self.kernels), gravity);
         let particles = &mut self.state.bodies[number].particles;
         for entry in 0..entries {
             let line = particles.line_mut(first + entry).iter_mut();
             line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
         }
         particles.compare();
-        let after = Holding::of_particles(&self.state.bodies[number].totals(), gravity);
+        let after = Holding::of_particles(&self.state.bodies[number].totals(self.kernels), gravity);
         self.book_written(number, [before, after]);
         Ok(())
     }

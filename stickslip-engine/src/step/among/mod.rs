@@ -14,7 +14,6 @@ pub(crate) use taking_up::Find;
 
 use self::loads::LeavingPoints;
 use super::Engine;
-use super::pass::FaultReport;
 use super::walls::WallBooks;
 use crate::body::Body;
 use crate::boundary::Wall;
@@ -28,6 +27,7 @@ use crate::grid::{
 use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, Shown, number_of, write_number};
+use crate::pass::FaultReport;
 use crate::ranks::{
     BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, bytes_of, combined, gathered,
     largest, message_to, read, told_first,
