@@ -2,17 +2,12 @@ use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
 use crate::basis::{Cpdi, Cubic, Gimp, Linear};
 use crate::boundary::{Boundary, reflect};
-use crate::contact::{Rules, rules};
-use crate::geometry::{MirroredShape, Shape};
-use crate::grid::{ActiveBlocks, Field, Lattice, next_of, node_at};
-use crate::kernels::Kernels;
+use crate::grid::{ActiveBlocks, Lattice, next_of, node_at};
 use crate::lanes::Processor;
-use crate::material::{Isotropic, Material, NeoHookean, Thickness};
-use crate::matter::{Body, BodyHere, Gyration, Particle};
+use crate::matter::Particle;
 use crate::particles::{ColumnStart, DOMAINS, OwnColumns, Particles, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
-use std::sync::Arc;
 
 /// The boxes as which nodes see particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +19,7 @@ enum Boxes {
 }
 
 /// Particles strewn over a few cells before two mirrors, deformed and stressed.
-fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
+fn body<const D: usize>(boxes: Boxes) -> Particles<f64, D> {
     let random = |i: usize| (i as f64 * 0.754_877_666_2).fract();
     let place = |i: usize, n: usize| Vector::from_fn(|k| 5.0 * random((k + n) * i + k));
     let particle = |i: usize| {
@@ -54,31 +49,18 @@ fn body<const D: usize>(boxes: Boxes) -> Body<f64, D> {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
     particles.deform_domains(0.5);
-    Body::from(BodyHere {
-        name: String::new(),
-        material: Arc::new(Material::NeoHookean(NeoHookean {
-            elastic: Isotropic { bulk_modulus: 1.0, shear_modulus: 1.0 },
-        })),
-        density: 1.0,
-        expansion: 0.0,
-        particles,
-        motion: None,
-        whole: MirroredShape::new(&Shape::Ball { center: [0.0; 3], radius: 1.0 }, Vec::new(), D),
-        thickness: Thickness::Moved,
-        gyration: Gyration { cell: 0.0, share: 0.0 },
-        volume_change: Default::default(),
-    })
+    particles
 }
 
 /// The same sums, particle by particle as the equations read, for every image of the node.
 fn plainly<const D: usize, B: Basis<f64>>(
-    near: &Near<'_, f64, D>,
+    (near, particles): (&Surroundings<'_, f64, D>, &Particles<f64, D>),
     node: [i32; D],
     first: Vector<f64, D>,
 ) -> MaterialSums<f64, D> {
     let mut sums = MaterialSums::<f64, D>::EMPTY;
     for turned in offsets::<D>(2) {
-        let walls: Vec<&Wall> = near.boundary.walls.iter().filter(|wall| turned[wall.axis] == 1).collect();
+        let walls: Vec<&Wall> = near.walls.iter().filter(|wall| turned[wall.axis] == 1).collect();
         if walls.len() != turned.iter().sum::<usize>() {
             continue;
         }
@@ -89,12 +71,10 @@ fn plainly<const D: usize, B: Basis<f64>>(
             x
         };
         let sign = |i: usize| if i < D && turned[i] == 1 { -1.0 } else { 1.0 };
-        let columns = near.bodies[0].particles.view();
-        for (index, particle) in near.bodies[0].particles.iter().enumerate() {
-            let stencil = Stencil::<f64, D, B>::new(
-                &near.lattice,
-                (particle.position, near.bodies[0].particles.edges(index)),
-            );
+        let columns = particles.view();
+        for (index, particle) in particles.iter().enumerate() {
+            let stencil =
+                Stencil::<f64, D, B>::new(&near.lattice, (particle.position, particles.edges(index)));
             let Some(offset) = offsets::<D>(B::WIDTH)
                 .find(|offset| (0..D).all(|i| stencil.base()[i] + offset[i] as i32 == image[i]))
             else {
@@ -141,42 +121,41 @@ fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>
         Boxes::TwoCells => Some(1.0),
     };
     let lattice = Lattice { half_side, ..Lattice::new(Vector::ZERO, 1.0) };
-    let bodies = [body::<D>(boxes)];
+    let particles = body::<D>(boxes);
     let mut active = ActiveBlocks::<D>::default();
     let base = |_, particle| {
-        let (position, half_sides) = bodies[0].particles.place(particle);
+        let (position, half_sides) = particles.place(particle);
         let half = lattice.half_sides(half_sides);
         std::array::from_fn(|i| Number::max(B::reach(position[i], half[i]), -9.0).floor() as i32)
     };
-    let number = |_, particle: usize| bodies[0].particles.numbers()[particle];
+    let number = |_, particle: usize| particles.numbers()[particle];
     active.update((1, |_| 300, B::WIDTH as i32 - 1), None, (base, number));
     let wall = |axis, node, inward| Wall { axis, node, inward, face: Face::Symmetry };
     let boundary = Boundary::new(vec![wall(0, 0, 1), wall(D - 1, 5, -1)]);
-    let rules = Rules::listed(1, vec![rules::Rule::from(&crate::scene::ContactRule::default())]);
-    let field = Field { nodes: Vec::new(), present: Vec::new(), filtered: Vec::new(), means: Vec::new() };
     for processor in Processor::available() {
-        let near = Near {
-            active: &active,
-            bodies: &bodies,
-            field: &field,
-            lattice,
-            boundary: &boundary,
-            rules: &rules,
-            ahead: None,
-            kernels: &const { Kernels::by::<B>() },
-            processor,
+        let near = Surroundings { active: &active, lattice, walls: &boundary.walls, processor };
+        let seen = SeenBody {
+            number: 0,
+            columns: particles.view(),
+            trusts_deformation: true,
+            is_joined: [false; D],
         };
         for block in offsets::<D>(2).map(|block| block.map(|b| b as i32)) {
             let wanted = every_node(D) & 0x9e37_79b9_7f4a_7c15;
             let [everything, places] = [Wanted::Everything, Wanted::Places].map(|sought| {
                 let mut sums = vec![MaterialSums::EMPTY; wanted.count_ones() as usize];
-                sum_around::<f64, D, B>(&near, (0, block), (wanted, sought), (&mut sums, &mut Vec::new()));
+                sum_around::<f64, D, B>(
+                    &near,
+                    (&seen, block),
+                    (wanted, sought),
+                    (&mut sums, &mut Vec::new()),
+                );
                 sums
             });
             let mut nodes = wanted;
             for (sums, places) in everything.iter().zip(&places) {
                 let node = node_at(block, next_of(&mut nodes).expect("as many nodes as sums"));
-                let plain = plainly::<D, B>(&near, node, lattice.position(node_at(block, 0)));
+                let plain = plainly::<D, B>((&near, &particles), node, lattice.position(node_at(block, 0)));
                 for (a, b) in sums.0.as_flattened().iter().zip(plain.0.as_flattened()) {
                     assert!((a - b).abs() < 1e-10, "{block:?} {node:?}: {sums:?} {plain:?}");
                 }
