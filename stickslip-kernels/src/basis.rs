@@ -161,6 +161,12 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     }
 }
 
+/// Whether kernels of a basis are compiled for AVX-512, beside AVX2: those of large runs, linear functions and GIMP in
+/// space and double precision. Each kind of processor costs a build as much as all others.
+pub const fn takes_most_time<T: Real, const D: usize, B: Basis<T>>() -> bool {
+    D == 3 && size_of::<T>() == 8 && !B::CORNERS && B::WIDTH <= 3
+}
+
 /// Tent functions of the particle's centre (Sulsky, Chen and Schreyer 1994).
 #[derive(Clone, Copy, Debug)]
 pub struct Linear;

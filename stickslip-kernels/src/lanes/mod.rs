@@ -25,8 +25,6 @@ pub trait Lanes: Number {
     type Real: Real;
     /// How many.
     const COUNT: usize;
-    /// Whether some lanes are read and written by one instruction, as all of them are.
-    const MASKED: bool = false;
 
     /// The same number in every lane.
     fn splat(x: Self::Real) -> Self;
@@ -268,6 +266,9 @@ pub trait Work {
     type Real: Real;
     /// What comes of it.
     type Output;
+    /// Whether it is compiled for AVX-512 as well, where AVX2 would do with the same bits: what takes most of the time
+    /// of runs is.
+    const BY_AVX512: bool = false;
     /// Does it. Must be `inline(always)` with all that it calls, else it is compiled for [`Any`] only.
     fn run<M: Machine<Self::Real>>(self) -> Self::Output;
     /// Does it on [`Processor::Any`], by arrays if there is no leaner way.
@@ -334,9 +335,9 @@ macro_rules! laned {
                     assert!(processor <= Processor::best(), "the processor has it");
                     match processor {
                         // SAFETY: the processor has AVX-512.
-                        Processor::Avx512 => return unsafe { x86::$avx512::run(work) },
-                        // SAFETY: the processor has AVX2.
-                        Processor::Avx2 => return unsafe { x86::$avx2::run(work) },
+                        Processor::Avx512 if W::BY_AVX512 => return unsafe { x86::$avx512::run(work) },
+                        // SAFETY: the processor has AVX2: those with AVX-512 do.
+                        Processor::Avx512 | Processor::Avx2 => return unsafe { x86::$avx2::run(work) },
                         Processor::Any => {}
                     }
                 }

@@ -57,18 +57,10 @@ pub fn splat<V: Lanes, const D: usize>(vector: &Vector<V::Real, D>) -> Vector<V,
 /// A particle has a fault. Of several lanes nothing is stored, and the fault may be any of theirs. A single lane stores
 /// what a report shows of it, and the fault is its first.
 #[inline(always)]
-pub fn group<
-    T: Laned,
-    V: Lanes<Real = T>,
-    M: Machine<T>,
-    const D: usize,
-    B: Basis<T>,
-    S: Start,
-    const WHOLE: bool,
->(
+pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Basis<T>, S: Start>(
     visit: &mut Visit<'_, T, D>,
     constants: &Constants<V, D>,
-    members: &Members<'_, T, D, WHOLE>,
+    members: &Members<'_, T, D>,
     (base, start): (Vector<V, D>, S),
 ) -> Result<u32, FaultKind> {
     let Pass { verbs, dt, transfer, pic, viscosity, .. } = *visit.pass;
@@ -86,8 +78,7 @@ pub fn group<
         sides = sides_of(&edges, constants.per_cell);
     }
     let shape = (&sides, &(edges * constants.per_cell));
-    let group =
-        Group::<V, D, B, S>::new(constants.in_cells(&position) - base, shape, start, members.count::<V>());
+    let group = Group::<V, D, B, S>::new(constants.in_cells(&position) - base, shape, start, members.count());
     let mut sound = Sound::EVERYTHING;
 
     let mut state =
@@ -309,7 +300,7 @@ pub fn group<
     }
     if (update_velocity && pic > T::ZERO) || turns || (update_stress && viscosity.is_some()) {
         let energies = (damped * members.mass::<V>()).numbers();
-        for &energy in &energies.0[..members.count::<V>().min(V::COUNT)] {
+        for &energy in &energies.0[..members.count().min(V::COUNT)] {
             visit.damped += 0.5 * energy.f64();
         }
     }

@@ -98,10 +98,8 @@ impl Reads {
 }
 
 /// Up to as many particles as there are lanes, as columns: the body's own where they lie side by side, else copies.
-///
-/// `WHOLE` ones are read and written whole registers at a time: those that fill the lanes, and on processors that do
-/// not mask lanes all of them, from copies. The others are a type of their own, for masks cost those that need none.
-pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
+/// They are read and written whole registers at a time: those that do not fill the lanes from copies.
+pub struct Members<'a, T, const D: usize> {
     columns: &'a Columns<T, D>,
     /// How many.
     count: usize,
@@ -111,8 +109,7 @@ pub struct Members<'a, T, const D: usize, const WHOLE: bool> {
     runs: Option<&'a ParticleRuns>,
 }
 
-/// Columns of particles that do not lie side by side or, without masks, do not fill the lanes,
-/// with room for a register from any lane on.
+/// Columns of particles that do not lie side by side or do not fill the lanes, with room for a register from any lane on.
 pub struct Copies<T> {
     columns: [[MaybeUninit<Numbers<T>>; 2]; MOST_COLUMNS],
     runs: ParticleRuns,
@@ -163,7 +160,7 @@ const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY
     + natural::most_entries(3)
     + Kind::Tensor.entries(3);
 
-impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
+impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     /// Particles that lie side by side.
     #[inline(always)]
     pub fn in_a_row(columns: &'a Columns<T, D>, index: &[u32]) -> Self {
@@ -199,8 +196,8 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
 
     /// How many.
     #[inline(always)]
-    pub fn count<V: Lanes<Real = T>>(&self) -> usize {
-        if WHOLE && V::MASKED { V::COUNT } else { self.count }
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// A column; lanes beyond repeat the first particle.
@@ -209,7 +206,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         // SAFETY: the tile's particles are this pass' alone.
         unsafe {
             let first = self.first.add(column * self.stride);
-            if WHOLE { V::load(first) } else { V::load_part(first, self.count, *first) }
+            V::load(first)
         }
     }
 
@@ -218,7 +215,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
         // SAFETY: as above.
         unsafe {
             let first = self.first.add(column * self.stride);
-            if WHOLE { numbers.store(first) } else { numbers.store_part(first, self.count) }
+            numbers.store(first)
         }
     }
 
@@ -397,7 +394,7 @@ impl<'a, T: Real, const D: usize, const WHOLE: bool> Members<'a, T, D, WHOLE> {
     }
 }
 
-impl<T: Real, const D: usize, const WHOLE: bool> Members<'_, T, D, WHOLE> {
+impl<T: Real, const D: usize> Members<'_, T, D> {
     /// Keeps of a particle with a fault what a picture of it shows: F and volume, if these are numbers.
     #[inline(always)]
     pub fn store_for_report<V: Lanes<Real = T>>(
@@ -413,18 +410,18 @@ impl<T: Real, const D: usize, const WHOLE: bool> Members<'_, T, D, WHOLE> {
 }
 
 /// The history of a group: what its particles remember, and what they will once the pass is known to be sound.
-pub struct HistoryOfGroup<'a, 'b, T, const D: usize, const WHOLE: bool> {
-    members: &'a Members<'b, T, D, WHOLE>,
+pub struct HistoryOfGroup<'a, 'b, T, const D: usize> {
+    members: &'a Members<'b, T, D>,
     /// An entry after the other, as the registers were stored; only those that were kept.
     after: [MaybeUninit<Numbers<T>>; MOST_HISTORY],
     /// Whether it was kept.
     pub changed: bool,
 }
 
-impl<'a, 'b, T: Real, const D: usize, const WHOLE: bool> HistoryOfGroup<'a, 'b, T, D, WHOLE> {
+impl<'a, 'b, T: Real, const D: usize> HistoryOfGroup<'a, 'b, T, D> {
     /// As the particles remember it.
     #[inline(always)]
-    pub fn new(members: &'a Members<'b, T, D, WHOLE>) -> Self {
+    pub fn new(members: &'a Members<'b, T, D>) -> Self {
         HistoryOfGroup { members, after: [const { MaybeUninit::uninit() }; MOST_HISTORY], changed: false }
     }
 
@@ -459,7 +456,7 @@ impl<'a, 'b, T: Real, const D: usize, const WHOLE: bool> HistoryOfGroup<'a, 'b, 
     }
 }
 
-impl<V: Lanes, const D: usize, const WHOLE: bool> Recall<V> for HistoryOfGroup<'_, '_, V::Real, D, WHOLE> {
+impl<V: Lanes, const D: usize> Recall<V> for HistoryOfGroup<'_, '_, V::Real, D> {
     const DIMENSION: usize = D;
     #[inline(always)]
     fn recall(&self, entry: usize) -> V {
@@ -471,7 +468,7 @@ impl<V: Lanes, const D: usize, const WHOLE: bool> Recall<V> for HistoryOfGroup<'
     }
 }
 
-impl<V: Lanes, const D: usize, const WHOLE: bool> Keep<V> for HistoryOfGroup<'_, '_, V::Real, D, WHOLE> {
+impl<V: Lanes, const D: usize> Keep<V> for HistoryOfGroup<'_, '_, V::Real, D> {
     #[inline(always)]
     fn keep(&mut self, entry: usize, value: V) {
         // SAFETY: there is room for any machine's lanes.
@@ -547,7 +544,7 @@ impl<T: Real> Copies<T> {
                 }
             }
         }
-        if !V::MASKED && self.runs.count > 1 && index.len() < V::COUNT {
+        if self.runs.count > 1 && index.len() < V::COUNT {
             for column in reads.columns(columns).into_iter().flatten() {
                 let copy = &mut self.columns[column];
                 let copy = copy.as_mut_ptr().cast::<T>();

@@ -1,14 +1,13 @@
 //! A pass over the particles of a tile, several at a time.
 //!
 //! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too
-//! few, those of a tile: straight from memory where they lie side by side there and fill the lanes or the processor
-//! masks them, else by copies. A group with a fault is taken again, one particle at a time,
+//! few, those of a tile: straight from memory where they lie side by side there and fill the lanes, else by copies. A group with a fault is taken again, one particle at a time,
 //! to find out what is wrong with whom.
 
 use super::group::{Constants, every, group, splat};
 use super::members::{AHEAD, Copies, Members, fetch};
 use super::{FaultKind, ParticleLoop, Visit};
-use crate::basis::Basis;
+use crate::basis::{Basis, takes_most_time};
 
 use crate::grid::{node_at, window_side};
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
@@ -41,6 +40,7 @@ pub unsafe fn visit<T: Laned, const D: usize, B: Basis<T>>(path: ParticleLoop, v
 impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D, B> {
     type Real = T;
     type Output = ();
+    const BY_AVX512: bool = takes_most_time::<T, D, B>();
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {
@@ -94,7 +94,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         let start = CellGroup::new::<D>(place.start, side);
         let members = Members::in_a_row(&columns, &indices);
         let constants = self.constants::<Pack<T, 1>>();
-        match group::<T, Pack<T, 1>, Any, D, B, _, true>(self, &constants, &members, (base, start)) {
+        match group::<T, Pack<T, 1>, Any, D, B, _>(self, &constants, &members, (base, start)) {
             Ok(inside) => {
                 self.left |= u64::from(inside & 1 == 0) << cell;
                 self.moved += outside(inside, 1);
@@ -173,20 +173,11 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         copies: &mut Copies<T>,
     ) -> Result<u32, FaultKind> {
         let (columns, verbs) = (self.columns, self.pass.verbs);
-        let in_full = in_a_row && index.len() == V::COUNT;
-        if V::MASKED && !in_full {
-            let members = match in_a_row {
-                true => Members::in_a_row(&columns, index),
-                false => Members::copied::<V>(&columns, index, &verbs, copies),
-            };
-            group::<T, V, M, D, B, S, false>(self, constants, &members, place)
-        } else {
-            let members = match in_full {
-                true => Members::in_a_row(&columns, index),
-                false => Members::copied::<V>(&columns, index, &verbs, copies),
-            };
-            group::<T, V, M, D, B, S, true>(self, constants, &members, place)
-        }
+        let members = match in_a_row && index.len() == V::COUNT {
+            true => Members::in_a_row(&columns, index),
+            false => Members::copied::<V>(&columns, index, &verbs, copies),
+        };
+        group::<T, V, M, D, B, S>(self, constants, &members, place)
     }
 
     /// In the order of cells, as many particles at a time as there are lanes.

@@ -15,7 +15,7 @@ mod tests;
 pub use reference_map::{Offset, ReferenceMap};
 pub use sums::{MaterialSums, Wanted};
 
-use crate::basis::{Basis, MAX_WIDTH};
+use crate::basis::{Basis, MAX_WIDTH, takes_most_time};
 use crate::boundary::Wall;
 use crate::grid::{ActiveBlocks, Lattice, Nodes, SIDE, every_node, layer};
 use crate::lanes::{Laned, Lanes, Machine, Processor, Work};
@@ -125,6 +125,7 @@ struct Around<'a, T, const D: usize, B> {
 impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
     type Real = T;
     type Output = ();
+    const BY_AVX512: bool = takes_most_time::<T, D, B>();
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {

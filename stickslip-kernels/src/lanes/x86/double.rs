@@ -34,7 +34,6 @@ lanes! { F64x8: __m512d as [f64; 8];
     _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd; _mm512_sqrt_pd _mm512_min_pd _mm512_max_pd _mm512_fmadd_pd apart_avx512;
     |a, b| u32::from(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(a, b));
     |lanes, there, elsewhere| _mm512_mask_blend_pd(lanes as u8, elsewhere, there);
-    const MASKED: bool = true;
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.

@@ -56,7 +56,6 @@ lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { Self(_mm256_setr_ps(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7))) }
     }
-    const MASKED: bool = MASKS;
     #[inline(always)]
     unsafe fn load_part(first: *const f32, count: usize, rest: f32) -> Self {
         // SAFETY: lanes beyond the mask are not read.
