@@ -1,37 +1,15 @@
 //! The stable time step.
 
 use crate::body::{Body, Particle};
-use crate::lanes::Lanes;
 use crate::material::Recall;
 use crate::particles::ColumnStart;
-use crate::tensor::{Number, Real};
+use crate::tensor::Real;
 use crate::threads::by_parts;
 use std::ops::Range;
+pub use stickslip_kernels::signal::{no_faster, signal_speed};
 
 /// Particles that a thread takes at a time.
 const PARTICLES: usize = 4096;
-
-/// Wave speed plus a particle's speed [m/s], from their squares.
-///
-/// ```text
-/// c + |v|,   c^2 = M J / rho_0          M: P-wave modulus in the present state, in plane stress a plate's
-/// ```
-/// A step dt = courant h / max(c + |v|) lets no signal cross more than that fraction of a cell (Courant,
-/// Friedrichs and Lewy 1928).
-#[inline(always)]
-pub fn signal_speed<N: Number>([wave, speed]: [N; 2]) -> N {
-    wave.sqrt() + speed.sqrt()
-}
-
-/// Lanes in which [`signal_speed`] is at most this, told without a root:  2 sqrt(a b) <= most^2 - a - b. Those that may
-/// be faster by round-off only are not among them, so that the fastest is found whatever comes first.
-#[inline(always)]
-pub fn no_faster<V: Lanes>([wave, speed]: [V; 2], most: V) -> u32 {
-    let surely = V::splat(V::Real::ONE - V::Real::EPSILON * V::Real::of(16.0));
-    let rest = most * most * surely - wave - speed;
-    let product = wave * speed;
-    rest.at_least(V::ZERO) & (rest * rest).at_least((product + product) + (product + product))
-}
 
 /// [`signal_speed`] of a particle [m/s]; of a rigid body's its speed: no wave runs there.
 pub fn signal<T: Real, const D: usize>(
@@ -40,7 +18,11 @@ pub fn signal<T: Real, const D: usize>(
     history: &impl Recall<T>,
 ) -> T {
     let velocity = particle.velocity;
-    let wave = if body.is_rigid() { T::ZERO } else { body.wave_modulus(particle, history) / body.density };
+    let wave = if body.is_rigid() {
+        T::ZERO
+    } else {
+        body.matter.wave_modulus(particle, history) / body.matter.density
+    };
     signal_speed([wave, velocity.dot(velocity)])
 }
 
@@ -84,7 +66,7 @@ pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> Option<
             // SAFETY: the particles are borrowed for reading.
             let history = unsafe { body.particles.view().history_of(p) };
             let mut particle = body.particles.get(p);
-            if let Some(natural) = body.particles.natural(p, body.expansion) {
+            if let Some(natural) = body.particles.natural(p, body.matter.expansion) {
                 particle.deformation = natural.elastic(&particle.deformation, T::ONE).0;
             }
             signal(body, &particle, &history).f64()

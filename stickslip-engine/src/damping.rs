@@ -8,7 +8,8 @@ use crate::column::{BULK_VISCOSITY, Kind};
 use crate::grid::Node;
 use crate::material::History;
 use crate::scene;
-use crate::tensor::{Number, Real, Vector};
+use crate::tensor::{Real, Vector};
+pub use stickslip_kernels::viscosity::BulkViscosity;
 
 /// Damping at the nodes of deformable bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,34 +68,6 @@ impl<T: Real> NodeDamping<T> {
 pub fn viscosity_columns(scene: &scene::Damping) -> &'static [History] {
     const PRESSURE: &[History] = &[History::new(BULK_VISCOSITY, "Pa", Kind::Number)];
     if scene.bulk == [0.0; 2] { &[] } else { PRESSURE }
-}
-
-/// Bulk viscosity: a pressure against compression, which spreads shocks over a few cells and takes the noise behind
-/// them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BulkViscosity<T> {
-    /// c_1 and c_2 [-].
-    pub coefficients: [T; 2],
-}
-
-impl<T: Real> BulkViscosity<T> {
-    /// What a scene asks for, if it does.
-    pub fn new(scene: &scene::Damping) -> Option<Self> {
-        (scene.bulk != [0.0; 2]).then(|| BulkViscosity { coefficients: scene.bulk.map(T::of) })
-    }
-
-    /// Pressure over the density [J/kg]:
-    ///
-    /// ```text
-    /// q / rho = h d (c_1 c + c_2 h d),   d = max(-tr L, 0)
-    /// ```
-    /// Landshoff (1955), LA-1930, for the first power of d; von Neumann and Richtmyer (1950), J. Appl. Phys. 21, for
-    /// the second. `rate` is h tr L [m/s], `speed` the wave speed c [m/s].
-    #[inline(always)]
-    pub fn over_density<N: Number>([linear, quadratic]: [N; 2], rate: N, speed: N) -> N {
-        let closing = (-rate).max(N::ZERO);
-        closing * (linear * speed + quadratic * closing)
-    }
 }
 
 #[cfg(test)]

@@ -2,45 +2,19 @@
 //!
 //! It reads no files and writes none. The rooms below are in reading order: each uses only rooms above it.
 
+pub use stickslip_kernels::{
+    Compiled, Kernels, basis, boundary, exact, grid, lanes, natural, pages, particles, pass, surroundings,
+    threads, transfer,
+};
 pub use stickslip_scene::{
     check, column, geometry, initial_stress, material, number, outside, part, rigid, scene, tensor,
 };
 
-// Several numbers in a register, on whatever the processor has.
-pub mod lanes;
-
-// Loops over threads.
-pub mod threads;
-
-// Sums that do not depend on the order of what is added.
-pub mod exact;
-
 // Processes that share a simulation.
 pub mod ranks;
 
-// Shape functions: linear, GIMP.
-pub mod basis;
-
-// Particles, and what they add up to.
+// Bodies.
 pub mod body;
-
-// Large pages of memory.
-pub mod pages;
-
-// What a law sees of the deformation where bodies begin with a stress or are heated.
-pub mod natural;
-
-// A body's particles as columns in memory.
-pub mod particles;
-
-// The sparse field: blocks of nodes under each body's particles.
-pub mod grid;
-
-// Particles to grid (P2G), grid to particles (G2P).
-pub mod transfer;
-
-// Mirrors and fixed faces of the domain.
-pub mod boundary;
 
 // The stable time step.
 pub mod clock;

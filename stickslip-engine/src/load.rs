@@ -8,14 +8,12 @@
 //! because particles move by sum S_i v_i and F by sum v_i (x) grad S_i. A force f at the point is N_i f at the nodes,
 //! the transpose of that, so that it does the same work on both.
 
-use crate::basis::Basis;
 use crate::body::Particle;
-use crate::grid::Lattice;
 use crate::part::{self, PartPoint, PartPoints};
 use crate::scene::{Action, Dashpot, Expression, Extent, Load, Moment, RIGID, Scene, Spring, SupportMotion};
-use crate::tensor::{Matrix, Real, Vector};
-use crate::transfer::{NodeTable, extent, offsets};
+use crate::tensor::{Real, Vector};
 use serde::{Deserialize, Serialize};
+use stickslip_kernels::points::arm;
 
 /// A load or a support with the points on which it acts.
 #[derive(Clone, Debug)]
@@ -318,13 +316,7 @@ impl LoadPoints {
 
 /// Where a point is now, x_p + F (X_s - X_p) [m].
 pub fn place_of<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> Vector<T, D> {
-    particle.position + arm(particle, point)
-}
-
-/// F (X_s - X_p) [m]
-fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, point: &PartPoint) -> Vector<T, D> {
-    let f = &particle.deformation.0;
-    Vector::from_fn(|i| (0..3).fold(T::ZERO, |sum, j| sum + f[i][j] * T::of(point.arm[j])))
+    particle.position + arm(particle, &point.arm)
 }
 
 /// Its direction; zero where it has none.
@@ -338,32 +330,5 @@ fn deformed_area<T: Real, const D: usize>(particle: &Particle<T, D>, point: &Par
     [0, 1, 2].map(|i| {
         let sum = (0..3).map(|j| inverse.0[j][i].f64() * point.normal[j]).sum::<f64>();
         jacobian * sum * point.measure
-    })
-}
-
-/// The nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i [-].
-pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
-    lattice: &Lattice<T, D>,
-    (particle, edges): (&Particle<T, D>, &Matrix<T>),
-    point: &PartPoint,
-) -> impl Iterator<Item = ([i32; D], [T; 2])> + use<T, D, B> {
-    let x = lattice.cells(particle.position);
-    let half = lattice.half_sides(extent(edges));
-    let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
-    let r = Vector::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
-    let table = B::Table::<T, D>::new(&r, &(*edges * lattice.per_cell));
-    let arm = arm::<T, D>(particle, point) * lattice.per_cell;
-    offsets::<D>(B::WIDTH).zip(0..).map(move |(offset, n)| {
-        let node = std::array::from_fn(|i| axes[i].base + offset[i] as i32);
-        if B::CORNERS {
-            let own = table.weight(n);
-            return (node, [own, (0..D).fold(own, |sum, i| sum + table.slope(n, i) * arm[i])]);
-        }
-        let weight = |i: usize| axes[i].shape.weight[offset[i]];
-        let except =
-            |skip: usize| (0..D).filter(|&i| i != skip).fold(T::ONE, |product, i| product * weight(i));
-        let beside = |i: usize| except(i) * axes[i].shape.slope(offset[i]) * arm[i];
-        let own = (0..D).fold(T::ONE, |product, i| product * weight(i));
-        (node, [own, (0..D).fold(own, |sum, i| sum + beside(i))])
     })
 }

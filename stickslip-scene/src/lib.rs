@@ -4,26 +4,10 @@
 
 #![forbid(unsafe_code)]
 
-// One number, or several side by side: what laws compute with.
-pub mod number;
-
-// Vector<T, D>, Matrix<T>, Symmetric<T>
-pub mod tensor;
-
-// Shapes: inside(x), bounds; filling them with particles.
-pub mod geometry;
+pub use stickslip_mechanics::{column, geometry, material, number, outside, scheme, tensor};
 
 // Grains in a container, at random and without overlap.
 pub mod packing;
-
-// What a column of particles holds: name, unit, components.
-pub mod column;
-
-// What a scene file only names, and the program that runs the scene gives.
-pub mod outside;
-
-// One file a law: equation, code, tests.
-pub mod material;
 
 // What the user asks for; scene file -> Scene, with errors that point at line and key.
 pub mod scene;

@@ -45,7 +45,7 @@ fn a_law_is_its_own_file_and_a_line_on_the_list() {
         names.sort();
         names
     };
-    let file = |name: &str| format!("stickslip-scene/src/material/{name}.rs");
+    let file = |name: &str| format!("stickslip-mechanics/src/material/{name}.rs");
     for (law, kind) in [("viscoelastic", "Viscoelastic"), ("damage", "Damage")] {
         let mut two = [file(law), file("mod")];
         two.sort();

@@ -35,14 +35,14 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
                 (true, false) => T::ONE,
                 _ => T::ZERO,
             });
-            for offset in offsets::<D>(self.width) {
+            for offset in offsets::<D>(self.kernels.width) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.active.particles_in(body, cell) {
                     let particles = &self.bodies[body].particles;
                     let particle = &particles.get(index as usize);
                     let arm = particle.position - seen;
                     let sides = particles.half_sides(index as usize);
-                    let half_box = |i: usize| match self.width {
+                    let half_box = |i: usize| match self.kernels.width {
                         WIDTH_OF_POINTS => T::ZERO,
                         _ => self.lattice.half_box(sides[i]),
                     };
@@ -57,7 +57,7 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
 
     /// A node and its images in the mirrors near it, each mirror turning around all that those before it gave.
     fn images(&self, node: [i32; D]) -> impl Iterator<Item = MirroredNode<T, D>> {
-        let (walls, reach) = (&self.boundary.walls, self.width as i32);
+        let (walls, reach) = (&self.boundary.walls, self.kernels.width as i32);
         let near = walls.iter().filter(move |wall| wall.face == Face::Symmetry && wall.depth(node) < reach);
         (0..1_usize << near.clone().count()).map(move |turned| {
             let mut image = MirroredNode { node, sign: [T::ONE; D] };

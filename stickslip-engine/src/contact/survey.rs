@@ -1,9 +1,8 @@
 //! Where bodies meet, and what the particles there say of their surfaces.
 
 use super::law::{NearParticle, law};
-use super::surroundings::{Chunk, MaterialSums, Wanted, behind};
 use super::{Growth, Pair, Rules, SurfaceEstimate, TimeStep};
-use crate::basis::Basis;
+use crate::Kernels;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::check::Interference;
@@ -12,6 +11,7 @@ use crate::grid::{
 };
 use crate::lanes::{Laned, Processor};
 use crate::scene::{ContactLaw, Face};
+use crate::surroundings::{Chunk, MaterialSums, SeenBody, Surroundings, Wanted, behind};
 use crate::tensor::{Real, Symmetric, Vector};
 use crate::threads::each;
 use std::ops::Range;
@@ -51,7 +51,7 @@ pub struct Facing<T, const D: usize> {
 }
 
 /// What a law may look at to tell how two bodies face each other.
-pub struct LawInputs<'a, T, const D: usize> {
+pub struct LawInputs<'a, T: 'static, const D: usize> {
     /// Everything near.
     pub near: &'a Near<'a, T, D>,
     /// All bodies at the node.
@@ -184,7 +184,7 @@ fn rigid_trace<T: Real>() -> T {
 }
 
 /// What a survey looks at.
-pub struct Near<'a, T, const D: usize> {
+pub struct Near<'a, T: 'static, const D: usize> {
     /// The blocks.
     pub active: &'a ActiveBlocks<D>,
     /// The bodies.
@@ -201,8 +201,8 @@ pub struct Near<'a, T, const D: usize> {
     pub ahead: Option<T>,
     /// Time at which the step begins [s].
     pub time: f64,
-    /// Nodes that a particle reaches along an axis, at most.
-    pub width: usize,
+    /// What knows the shape functions.
+    pub kernels: &'static Kernels<T, D>,
     /// Who looks.
     pub processor: Processor,
 }
@@ -221,7 +221,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
     }
 
     /// Surveys every node that two or more bodies share.
-    pub fn survey<B: Basis<T>>(&self, survey: &mut Survey<T, D>) {
+    pub fn survey(&self, survey: &mut Survey<T, D>) {
         let Survey { parts, count, scratches } = survey;
         *count = self.active.shared_blocks.len().div_ceil(BLOCKS);
         parts.resize_with(parts.len().max(*count), SurveyPart::default);
@@ -234,11 +234,22 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             part.sites.clear();
             part.sides.clear();
             part.encounters.clear();
-            shared_blocks.iter().for_each(|meeting| self.survey_block::<B>(meeting, &mut scratch, part));
+            shared_blocks.iter().for_each(|meeting| self.survey_block(meeting, &mut scratch, part));
         });
     }
 
-    fn survey_block<B: Basis<T>>(
+    /// A body as sums over its particles see it.
+    fn seen(&self, number: usize) -> SeenBody<T, D> {
+        let body = &self.bodies[number];
+        SeenBody {
+            number,
+            columns: body.particles.view(),
+            trusts_deformation: body.trusts_deformation(),
+            is_joined: std::array::from_fn(|axis| body.whole.is_joined(axis)),
+        }
+    }
+
+    fn survey_block(
         &self,
         meeting: &SharedBlock<D>,
         scratch: &mut Scratch<T, D>,
@@ -253,6 +264,12 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         if shared == 0 {
             return;
         }
+        let surroundings = Surroundings {
+            active: self.active,
+            lattice: self.lattice,
+            walls: &self.boundary.walls,
+            processor: self.processor,
+        };
         sums.clear();
         next.clear();
         moduli.clear();
@@ -260,7 +277,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             slots
                 .iter()
                 .map(|&slot| &self.bodies[body(slot)])
-                .map(|body| body.material.wave_modulus_at_rest(body.thickness)),
+                .map(|body| body.matter.material.wave_modulus_at_rest(body.matter.thickness)),
         );
         let by_place = |&[_, _, rule]: &[usize; 3]| law::<T, D>(self.rules.rule(rule).law).by_place();
         let places = self.ahead.is_some() && pairs.iter().all(by_place);
@@ -270,7 +287,12 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
             let first = sums.len();
             next.push(first);
             sums.resize(first + present.count_ones() as usize, MaterialSums::EMPTY);
-            self.sum_around::<B>((body(slot), block), (*present, sought), (&mut sums[first..], chunks));
+            (self.kernels.sum_around)(
+                &surroundings,
+                (&self.seen(body(slot)), block),
+                (*present, sought),
+                (&mut sums[first..], chunks),
+            );
         }
         let mut nodes = shared;
         while let Some(local) = next_of(&mut nodes) {
@@ -338,7 +360,7 @@ impl<T: Laned, const D: usize> Near<'_, T, D> {
         for (&slot, present) in slots.iter().zip(&mut *present) {
             let owner = &self.bodies[self.active.slots[slot as usize].0 as usize];
             let trace = if owner.is_rigid() { rigid_trace::<T>() } else { trace::<T>() };
-            let least = trace * self.cell_volume() * owner.density;
+            let least = trace * self.cell_volume() * owner.matter.density;
             let mut nodes = *present & several & free;
             while let Some(local) = next_of(&mut nodes) {
                 if self.field.nodes[slot as usize * n + local].mass <= least {

@@ -1,14 +1,13 @@
 //! The verb that books what a step did: contact, the work of friction and of damping, and what forces lack to balance.
 
 use super::Engine;
-use super::pass::FaultReport;
 use super::state::Workspace;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::contact::{BlockSums, Change, Impulse, Impulses, Span};
 use crate::exact::ExactSum;
 use crate::grid::{Node, locate, next_of, node_at, nodes_per_block};
 use crate::lanes::Laned;
+use crate::pass::FaultReport;
 use crate::ranks::{combined, joined};
 use crate::scene::ContactLaw;
 use crate::tensor::{Real, Vector};
@@ -91,7 +90,7 @@ pub(super) enum Interpolated {
     Twice,
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Books what the step did, and measures how far from balance its forces are. Nothing of it changes the step.
     ///
     /// Works are force times the mean of u^0 and u^1, the velocities interpolated before and after. Where the step does

@@ -14,14 +14,13 @@
 //! uniform dilatation and a uniform pressure stay as they are.
 
 use super::Engine;
-use super::pass::Verbs;
-use crate::basis::Basis;
 use crate::grid::Node;
 use crate::lanes::Laned;
+use crate::pass::Verbs;
 use crate::transfer::Share;
 use std::time::Instant;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// d_i, from the velocities that strain; nothing where no material wants it.
     pub(super) fn average_dilatation(&mut self, dt: T) {
         if self.settings.averages_volume {

@@ -9,8 +9,8 @@ use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
-use crate::basis::{Basis, Cpdi, Cubic, Gimp, Linear};
-use crate::body::{Body, BodyHere, Particle};
+use crate::Compiled;
+use crate::body::{Body, BodyHere, Matter, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
 use crate::contact::{ContactSums, Rules};
@@ -33,7 +33,6 @@ use crate::scene::{
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
 use std::collections::HashSet;
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// The simulation of a scene.
@@ -128,7 +127,7 @@ pub(crate) trait Shareable: Simulation {
     ) -> Result<(), NotTakenUp>;
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
+impl<T: Laned, const D: usize> Shareable for Engine<T, D> {
     fn counts_of_all(&self) -> Vec<usize> {
         Engine::counts_of_all(self)
     }
@@ -154,33 +153,19 @@ impl<T: Laned, const D: usize, B: Basis<T>> Shareable for Engine<T, D, B> {
 
 /// The simulation with these particles.
 fn build_for(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Box<dyn Shareable>, Problem> {
-    match (scene.dimension, scene.precision) {
+    Ok(match (scene.dimension, scene.precision) {
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
-            with_basis::<f64, 2>(scene, path, keeping)
+            Box::new(Engine::<f64, 2>::of(scene, path, keeping)?)
         }
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
-            with_basis::<f32, 2>(scene, path, keeping)
+            Box::new(Engine::<f32, 2>::of(scene, path, keeping)?)
         }
-        (Dimension::Space, Precision::Double) => with_basis::<f64, 3>(scene, path, keeping),
-        (Dimension::Space, Precision::Single) => with_basis::<f32, 3>(scene, path, keeping),
-    }
-}
-
-fn with_basis<T: Laned, const D: usize>(
-    scene: &Scene,
-    path: ParticleLoop,
-    keeping: Keeping,
-) -> Result<Box<dyn Shareable>, Problem> {
-    Ok(match scene.discretization.basis {
-        BasisKind::Linear => Box::new(Engine::<T, D, Linear>::of(scene, path, keeping)?),
-        // Boxes of a cell: see `Gimp`.
-        BasisKind::Gimp | BasisKind::Spline => Box::new(Engine::<T, D, Gimp>::of(scene, path, keeping)?),
-        BasisKind::Cubic => Box::new(Engine::<T, D, Cubic>::of(scene, path, keeping)?),
-        BasisKind::Cpdi => Box::new(Engine::<T, D, Cpdi>::of(scene, path, keeping)?),
+        (Dimension::Space, Precision::Double) => Box::new(Engine::<f64, 3>::of(scene, path, keeping)?),
+        (Dimension::Space, Precision::Single) => Box::new(Engine::<f32, 3>::of(scene, path, keeping)?),
     })
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Compiled<D>, const D: usize> Engine<T, D> {
     /// The simulation of a scene of this dimension and precision.
     ///
     /// # Errors
@@ -236,6 +221,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         filled: &dyn Fn(usize) -> Option<Filled>,
     ) -> Result<Self, Problem> {
         let cell = scene.discretization.cell;
+        let kernels = T::kernels(scene.discretization.basis);
         let half_side = match scene.discretization.basis {
             BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi => None,
             BasisKind::Spline => Some(0.5),
@@ -275,15 +261,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let make = || -> Result<BodyHere<T, D>, Problem> {
                 Ok(BodyHere {
                     name: body.name.clone(),
-                    material: law.expect("it has been made"),
-                    density: T::of(begun.density),
-                    expansion: T::of(scene.materials[body.material].thermal_expansion),
+                    matter: Matter {
+                        material: law.expect("it has been made"),
+                        density: T::of(begun.density),
+                        expansion: T::of(scene.materials[body.material].thermal_expansion),
+                        thickness: scene.dimension.thickness(),
+                        gyration: rotation::gyration(kernels.box_spread, cell, half_side),
+                        volume_change: scene.materials[body.material].volume_change,
+                    },
                     particles: begun.particles(&filled.kept, heated.contains(&number))?,
                     motion: begun.motion.map(Box::new),
                     whole: whole::<D>(scene, number),
-                    thickness: scene.dimension.thickness(),
-                    gyration: rotation::gyration::<T, B>(cell, half_side),
-                    volume_change: scene.materials[body.material].volume_change,
                 })
             };
             bodies.push(match kinds.as_mut().filter(|_| is_elsewhere) {
@@ -316,7 +304,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
                 walls: walls::<D>(scene),
                 damping: NodeDamping::new(&scene.damping),
-                viscosity: BulkViscosity::new(&scene.damping),
+                viscosity: BulkViscosity::new(scene.damping.bulk),
                 rules: Rules::new(scene),
                 loads,
                 joints: scene.joints.clone(),
@@ -365,7 +353,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             among: None,
             kinds,
             watch: Stopwatch::default(),
-            basis: PhantomData,
+            kernels,
         })
     }
 }

@@ -6,7 +6,7 @@
 use super::Engine;
 use super::build::spin;
 use super::loads::{NOWHERE, find_carriers};
-use crate::basis::Basis;
+use crate::Kernels;
 use crate::body::{Body, Particle, TotalSums, Totals, TurningSums};
 use crate::column::{HALF_EDGES, INITIAL_STRETCH};
 use crate::door::{RestoreError, SavedBody, SavedColumn, SavedState};
@@ -61,7 +61,7 @@ struct FirstParticle {
     places: [[f64; 3]; 2],
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Lets bodies begin as those of the same name were in another run.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         }
         let mut here: Vec<&mut Body<T, D>> = carried.iter_mut().flatten().collect();
         if saved.of_snapshot {
-            complete(&mut here, velocities, ranks)?;
+            complete(self.kernels, &mut here, velocities, ranks)?;
         }
         let most = T::HALF * self.settings.lattice.cell;
         here.into_iter().for_each(|body| finish(body, velocities, most));
@@ -381,6 +381,7 @@ fn weigh<T: Laned, const D: usize>(
 /// # Errors
 /// The particles of a rigid one belong to none.
 fn complete<T: Laned, const D: usize>(
+    kernels: &Kernels<T, D>,
     bodies: &mut [&mut Body<T, D>],
     velocities: StartVelocities,
     ranks: Others,
@@ -400,7 +401,7 @@ fn complete<T: Laned, const D: usize>(
     let firsts: Vec<Option<FirstParticle>> = bodies.iter().map(first).collect();
     let firsts = ranks.map_or_else(|| firsts.clone(), |ranks| combined(ranks, &firsts, first_of_each));
     for (bodies, firsts) in bodies.chunks_mut(SUMMED_AT_A_TIME).zip(firsts.chunks(SUMMED_AT_A_TIME)) {
-        let whole = turning(bodies, ranks);
+        let whole = turning(kernels, bodies, ranks);
         for ((body, first), (totals, spins)) in bodies.iter_mut().zip(firsts).zip(whole) {
             if totals.mass > 0.0 {
                 let turned = turn(body, (totals, spins), first.as_ref());
@@ -417,15 +418,19 @@ fn complete<T: Laned, const D: usize>(
 }
 
 /// What the particles of bodies on all ranks add up to, and how fast each body turns [rad/s].
-fn turning<T: Laned, const D: usize>(bodies: &[&mut Body<T, D>], ranks: Others) -> Vec<(Totals, [f64; 3])> {
-    let mut sums: Vec<TotalSums> = bodies.iter().map(|body| body.total_sums()).collect();
+fn turning<T: Laned, const D: usize>(
+    kernels: &Kernels<T, D>,
+    bodies: &[&mut Body<T, D>],
+    ranks: Others,
+) -> Vec<(Totals, [f64; 3])> {
+    let mut sums: Vec<TotalSums> = bodies.iter().map(|body| body.total_sums(kernels)).collect();
     let add_up = |sums: &mut dyn Iterator<Item = &mut ExactSum>| {
         ranks.into_iter().for_each(|ranks| add_up_each(ranks, &mut *sums));
     };
     add_up(&mut sums.iter_mut().flat_map(TotalSums::all));
     let totals: Vec<Totals> = sums.iter().map(TotalSums::rounded).collect();
     let mut sums: Vec<[TurningSums; 2]> =
-        bodies.iter().zip(&totals).map(|(body, totals)| body.turning_of_points(totals)).collect();
+        bodies.iter().zip(&totals).map(|(body, totals)| body.turning_of_points(kernels, totals)).collect();
     add_up(&mut sums.iter_mut().flatten().flat_map(TurningSums::all));
     totals.into_iter().zip(sums.iter().map(TurningSums::spin_of_points::<D>)).collect()
 }
@@ -471,7 +476,7 @@ fn finish<T: Laned, const D: usize>(body: &mut Body<T, D>, velocities: StartVelo
     let Some(body) = body.here_mut() else { return };
     for i in 0..body.particles.len() {
         let mut particle = body.particles.get(i);
-        let mass = body.density * particle.volume / particle.deformation.det();
+        let mass = body.matter.density * particle.volume / particle.deformation.det();
         if (mass - particle.mass).abs() > T::of(1e-5) * mass {
             particle.mass = mass;
         }

@@ -6,15 +6,12 @@
 
 use super::Engine;
 use super::among::Among;
-use super::pass::{Found, ParticleLoop, Pass, Verbs, Visit};
-use super::tile::SeveralAtATime;
-use crate::basis::Basis;
 use crate::grid::{Disjoint, Field, NodeSums, Window, add_corner, window_side};
 use crate::lanes::Laned;
 use crate::particles::Columns;
+use crate::pass::{Found, Pass, Verbs, Visit};
 use crate::threads::each_range;
 use crate::transfer::Share;
-use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
 /// What threads work with, kept from pass to pass.
@@ -34,7 +31,7 @@ impl<T, const D: usize> Default for Threads<T, D> {
 /// Tiles that a thread takes at a time.
 const TILES: usize = 2;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Takes every particle through a pass; those of rigid bodies only scatter.
     pub(super) fn pass(&mut self, pass: &Pass<T, D>) -> Found<T> {
         let threads = rayon::current_num_threads();
@@ -53,7 +50,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         });
         self.workspace.threads.columns.extend(opened);
         let mut among = self.among.take();
-        let side = window_side(B::WIDTH).pow(D as u32);
+        let kernels = self.kernels;
+        let width = window_side(kernels.width);
+        let side = width.pow(D as u32);
         let mut kept_windows = match (&mut among, pass.verbs.scatter) {
             (Some(among), Some(_)) => among.take_room(self.workspace.active.border.as_deref(), side),
             _ => Vec::new(),
@@ -81,7 +80,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 for corner in (0..1 << D).filter(|corner| waiting >> corner & 1 == 0) {
                     let slot = (tile.slots[corner as usize], corner);
                     // SAFETY: only this tile writes to its slots.
-                    unsafe { add_corner(kept, &nodes, slot, window_side(B::WIDTH)) };
+                    unsafe { add_corner(kept, &nodes, slot, width) };
                 }
                 return Found { signal, ..Found::NOTHING };
             }
@@ -94,7 +93,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let mut visit = Visit {
                 pass,
                 tile,
-                body,
+                matter: &body.matter,
+                numbers: body.particles.numbers(),
                 columns: room.columns[tile.place],
                 order: active.order_of(tile.body),
                 cells: active.cells_of(tile),
@@ -108,19 +108,11 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 moved: 0,
                 damped: 0.0,
                 found: Found { signal, ..Found::NOTHING },
-                basis: PhantomData::<B>,
             };
             // SAFETY: every particle belongs to one tile, and every tile to one call. Nobody writes to the field in a
             // pass without scatter and while windows are kept, and else only this tile to its slots:
             // portions and tiles of one colour share none.
-            unsafe {
-                match path {
-                    ParticleLoop::Lanes(processor) => T::run(processor, SeveralAtATime(&mut visit)),
-                    ParticleLoop::OneLane => visit.take_one_by_one(),
-                    #[cfg(test)]
-                    ParticleLoop::Naive => visit.take_naively(),
-                }
-            }
+            unsafe { (kernels.visit)(path, &mut visit) };
             // SAFETY: every tile has a place of its own.
             unsafe {
                 *left.get(index as usize) |= visit.left;
@@ -161,7 +153,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 // What others wait for comes first, and is under way while the rest is done.
                 let kept = &border.kept;
                 each_range(kept.len(), TILES, &|range| several(&mut kept[range].iter().copied(), true));
-                let (shown, side) = ((&windows, share), window_side(B::WIDTH));
+                let (shown, side) = ((&windows, share), width);
                 // SAFETY: all tiles that are kept have been visited.
                 let messages = unsafe { Among::windows_for_others::<D>(border, shown, side) };
                 let from: Vec<usize> = border.incoming.iter().map(|traffic| traffic.rank).collect();
@@ -172,7 +164,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let found = all.into_inner().unwrap_or_else(PoisonError::into_inner);
         if let (Some(among), Some(border), Some(share)) = (&mut among, border, pass.verbs.scatter) {
             let came_here = (border, kept_windows, came);
-            among.add_windows(came_here, (&nodes, share), window_side(B::WIDTH));
+            among.add_windows(came_here, (&nodes, share), width);
         }
         self.among = among;
         found

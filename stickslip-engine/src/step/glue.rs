@@ -1,12 +1,11 @@
 //! Glued bodies interpolate as one.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::lanes::Laned;
 use crate::scene::ContactLaw;
 use crate::tensor::Vector;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// One interpolated velocity for deformable bodies that are glued at a node.
     ///
     /// ```text

@@ -8,7 +8,6 @@
 //! ```
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
@@ -19,7 +18,7 @@ use crate::threads::each;
 /// Particles that a thread takes at a time.
 const PART: usize = 1 << 13;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Gravity in a step from now on, that of its middle [m/s^2].
     pub(super) fn gravity(&self, dt: T) -> Vector<T, D> {
         Vector::of(self.settings.gravity.at(self.state.time + 0.5 * dt.f64()))

@@ -9,8 +9,6 @@
 //! with half of the growth of the last step and half of that of the next one, by the state between them.
 
 use super::Engine;
-use super::pass::{FaultKind, ParticleFault};
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::door::StepError;
 use crate::exact::ExactSum;
@@ -18,6 +16,7 @@ use crate::lanes::Laned;
 use crate::load::LoadPoints;
 use crate::natural::heat_in;
 use crate::particles::ColumnStart;
+use crate::pass::{FaultKind, ParticleFault};
 use crate::scene::{Action, Expression, Moment};
 use crate::tensor::{Real, Vector};
 use crate::threads::each;
@@ -39,7 +38,7 @@ pub struct Warmed<T> {
     fault: Option<FaultKind>,
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Brings what loads heat to the temperature at the end of a step of `dt` from now on, and books what that does.
     ///
     /// # Errors
@@ -101,7 +100,7 @@ fn warm<T: Real, const D: usize>(
     let start = Vector::<T, D>::from_fn(|k| particles.line(ColumnStart::<D>::START + k)[i]);
     let moment = Moment { time, place: particle.position.space(), start: start.space(), ..Moment::default() };
     let after = T::of(temperature.at_moment(&moment));
-    let alpha = body.expansion.f64();
+    let alpha = body.matter.expansion.f64();
     let size = 1.0 + alpha * after.f64();
     if size.is_nan() || size <= 0.0 {
         return Warmed { temperature: before, fault: Some(FaultKind::Shrunk), ..Warmed::default() };
@@ -110,12 +109,12 @@ fn warm<T: Real, const D: usize>(
     let growth = 0.5 * (libm::log1p(strain.f64()) + libm::log1p(next));
     let mut work = 0.0;
     if growth != 0.0 {
-        let natural = particles.natural(i, body.expansion).expect("heated bodies have such a state");
+        let natural = particles.natural(i, body.matter.expansion).expect("heated bodies have such a state");
         let (elastic, _) = natural.elastic(&particle.deformation, T::ONE);
         // SAFETY: the particles are borrowed for reading.
         let history = unsafe { particles.view().history_of(i) };
-        let [energy, _] = body.material.energies(&elastic, &particle.stress, &history);
-        let stored = energy * (particle.mass / body.density / natural.volume);
+        let [energy, _] = body.matter.material.energies(&elastic, &particle.stress, &history);
+        let stored = energy * (particle.mass / body.matter.density / natural.volume);
         work = growth * (3.0 * stored.f64() - (particle.volume * particle.stress.trace()).f64());
     }
     if !work.is_finite() {

@@ -2,7 +2,6 @@
 
 use super::Engine;
 use super::state::State;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::lanes::Laned;
 use crate::part::PartPoint;
@@ -63,7 +62,7 @@ pub(super) struct Held<T, const D: usize> {
     points: Vec<Vec<PartPoint>>,
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Copies the state.
     pub(super) fn hold_state(&mut self) {
         let loads = self.settings.loads.iter().filter(|_| self.among.is_some());

@@ -1,7 +1,6 @@
 //! Particles that have left the domain, where the scene goes on without them.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::body::Totals;
 use crate::door::RemovedParticles;
 use crate::grid::SIDE;
@@ -18,7 +17,7 @@ const EVERY: u64 = 10;
 /// A particle moves by less in a step [cells].
 const MARGIN: i32 = 2;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Whether deformable bodies go on without particles that leave the domain.
     pub(super) fn removes_leavers(&self) -> bool {
         self.settings.domain.is_some() && self.settings.leaving == Leaving::Remove

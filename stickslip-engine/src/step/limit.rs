@@ -1,13 +1,12 @@
 //! How long the next step may be, and what makes it no longer.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::clock::{Fastest, fastest_signal};
 use crate::door::StepLimit;
 use crate::lanes::Laned;
 use crate::ranks::largest;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     pub(super) fn stable(&self) -> f64 {
         let fastest = || {

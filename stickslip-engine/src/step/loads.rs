@@ -10,13 +10,12 @@
 //! stays stable and as long as it was. What M_i keeps from the node is the support's doing, and is booked as its force.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::boundary::{Boundary, reflect};
 use crate::door::StepError;
 use crate::exact::ExactSum;
 use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
-use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, nodes_of, place_of};
+use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, place_of};
 use crate::outside::OutsidePoints;
 use crate::part::PartPoint;
 use crate::particles::by_number;
@@ -147,7 +146,7 @@ impl<T: Real, const D: usize> Default for NodeLoad<T, D> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// What loads and supports do to points of bodies, and which nodes feel it. Where particles have strained but still
     /// move, `ahead` is how long [s].
     ///
@@ -287,7 +286,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (places, bodies, sums) = (&room.places, &self.state.bodies, &self.state.loads);
         let (active, boundary, lattice) =
             (&self.workspace.active, &self.workspace.boundary, &self.settings.lattice);
-        let nodes = &self.workspace.field.nodes;
+        let (nodes, nodes_of) = (&self.workspace.field.nodes, self.kernels.nodes_of);
         let time = self.state.time;
         let time = (time, time + ahead.map_or(0.0, |ahead| ahead.f64()), dt.f64());
         each(&mut room.points, POINTS, |i, loaded| {
@@ -304,14 +303,16 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let (mut velocity, mut moves) = (Vector::ZERO, Vector::ZERO);
             // A rigid body feels the force itself, see `mechanism/`.
             let moved_by_nodes = !body.is_rigid();
-            let nodes_near = || nodes_of::<T, D, B>(lattice, (&particle, &edges), point);
-            for (node, [own, weight]) in moved_by_nodes.then(nodes_near).into_iter().flatten() {
-                let Some((index, mirrored)) = find(active, boundary, (load.body, node)) else { continue };
+            let mut take = |node: [i32; D], [own, weight]: [T; 2]| {
+                let Some((index, mirrored)) = find(active, boundary, (load.body, node)) else { return };
                 if nodes[index as usize].mass > T::ZERO {
                     velocity += mirror(nodes[index as usize].start, mirrored) * weight;
                     moves += mirror(nodes[index as usize].integrated, mirrored) * own;
                     loaded.nodes.push(LoadedNode { index, mirrored, weight });
                 }
+            };
+            if moved_by_nodes {
+                nodes_of(lattice, (&particle, &edges), &point.arm, &mut take);
             }
             match ahead {
                 None => loaded.before = place_of(&particle, point),

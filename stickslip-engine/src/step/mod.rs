@@ -39,13 +39,11 @@ mod limit;
 mod loads;
 mod mechanism;
 #[cfg(test)]
-mod naive;
-mod pass;
+mod naive_tests;
 mod relax;
 mod saving;
 mod springs;
 mod state;
-mod tile;
 mod together;
 mod unbounded;
 mod verbs;
@@ -54,17 +52,17 @@ mod walls;
 mod watch;
 mod writing;
 
+pub use crate::pass::ParticleLoop;
 pub(crate) use among::Find;
 pub(crate) use build::{Shareable, build_empty, build_share};
 pub use build::{build, build_among, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
-pub use pass::ParticleLoop;
 pub(crate) use relax::RelaxationProgress;
 pub(crate) use unbounded::particles_around;
 pub(crate) use walls::WallSums;
 
-use crate::basis::Basis;
+use crate::Kernels;
 use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::contact::ContactUse;
@@ -76,12 +74,11 @@ use crate::transfer::Share;
 use account::{Interpolated, StepSums};
 use among::{Among, Kinds};
 use state::{Settings, State, Workspace};
-use std::marker::PhantomData;
 use std::sync::PoisonError;
 use watch::Stopwatch;
 
-/// A simulation in `D` dimensions and precision `T`, with shape functions `B`.
-pub struct Engine<T, const D: usize, B> {
+/// A simulation in `D` dimensions and precision `T`.
+pub struct Engine<T: 'static, const D: usize> {
     settings: Settings<T, D>,
     state: State<T, D>,
     workspace: Workspace<T, D>,
@@ -92,7 +89,8 @@ pub struct Engine<T, const D: usize, B> {
     among: Option<Among<T>>,
     /// Of one of several ranks, what it knows of bodies of which it has nothing.
     kinds: Option<Kinds<T, D>>,
-    basis: PhantomData<B>,
+    /// What knows the shape functions.
+    kernels: &'static Kernels<T, D>,
 }
 
 /// The recipes. Numbers are equations of Bardenhagen et al. (2001). P2G: particles to grid, G2P: grid to particles.
@@ -107,7 +105,7 @@ pub struct Engine<T, const D: usize, B> {
 /// also move them; which velocities these are differs. In MUSL they are interpolated a second time, and contact acts a
 /// third time. Walls are imposed after each contact, too. All contact laws but one act in all of these places, as the
 /// paper's do. `surface`, the default, leaves alone interpolated velocities that strain nothing.
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
         match self.settings.time.stress_update {
@@ -219,7 +217,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Simulation for Engine<T, D, B> {
+impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let dt = self.stable().min(longest);

@@ -16,7 +16,6 @@
 //! to rest with 0.1 and not without. What all of this takes from the bodies the ledger counts as damping.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
 use crate::scene;
@@ -66,7 +65,7 @@ impl RelaxationProgress {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Rate of the viscous damping in a step, beside that of the scene: none where nothing is to come to rest [1/s].
     pub(super) fn relaxing_rate(&self, dt: T) -> T {
         match self.settings.time.relax {

@@ -4,7 +4,6 @@ use super::Engine;
 use super::loads::{NOWHERE, find_carriers};
 use super::state::State;
 use super::unbounded::Unbounded;
-use crate::basis::Basis;
 use crate::body::{Body, Particle};
 use crate::door::{RestoreError, SavedBody, SavedColumn, SavedShare, SavedState, SavedUnbounded};
 use crate::geometry::ParticleSite;
@@ -15,7 +14,7 @@ use crate::transfer::SETTLES_EVERY;
 use std::convert::Infallible;
 use std::ops::Range;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
         let mut saved = self.saved_rest();

@@ -12,11 +12,10 @@
 
 use super::Engine;
 use super::loads::{NOWHERE, find, mirror};
-use crate::basis::Basis;
 use crate::exact::ExactSum;
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
-use crate::load::{nodes_of, place_of};
+use crate::load::place_of;
 use crate::part::{PartPoint, PartPoints};
 use crate::tensor::Vector;
 use std::time::Instant;
@@ -63,7 +62,7 @@ impl<T, const D: usize> Default for SpringRoom<T, D> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Springs pull at the velocities that all other forces give to nodes and free rigid bodies. Where particles are to
     /// move yet by the velocities that strained them, `ahead` is how long [s].
     pub(super) fn pull_springs(&mut self, dt: T, ahead: Option<T>) {
@@ -170,20 +169,21 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 };
                 let seen = (&body.particles.get(place), &body.particles.edges(place));
                 let share = T::of(point.measure / end.measure);
-                for (node, [_, weight]) in nodes_of::<T, D, B>(&self.settings.lattice, seen, point) {
-                    let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { continue };
+                let mut take = |node: [i32; D], [_, weight]: [T; 2]| {
+                    let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { return };
                     if self.workspace.field.nodes[index as usize].mass > T::ZERO {
                         let pull = mirror(along, mirrored) * (weight * share);
                         if self.among.is_none() {
                             nodes[e].push((index, pull));
-                            continue;
+                            return;
                         }
                         let (_, block) = active.slots[index as usize / n];
                         let node: [i32; D] = node_at(block, index as usize % n);
                         let node = std::array::from_fn(|k| if k < D { node[k] } else { 0 });
                         found.push(([e as u32, number], node, pull.space()));
                     }
-                }
+                };
+                (self.kernels.nodes_of)(&self.settings.lattice, seen, &point.arm, &mut take);
             }
         }
         if let Some(among) = &self.among {

@@ -22,7 +22,7 @@ use crate::scene::{Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
 
-use super::pass::{Found, ParticleLoop};
+use crate::pass::{Found, ParticleLoop};
 
 /// What the scene says, the same in every step.
 pub struct Settings<T, const D: usize> {

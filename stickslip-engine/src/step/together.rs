@@ -1,13 +1,12 @@
 //! Laws that answer for all particles of a body at once: what they are asked, by the particles' numbers.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::door::StepError;
 use crate::lanes::Laned;
 use crate::material::{Custom, LawArrays, LawOverArrays, MOST_HISTORY, Material};
 use crate::particles::Particles;
-use crate::step::pass::{FaultKind, ParticleFault};
+use crate::pass::{FaultKind, ParticleFault};
 use crate::tensor::{Real, Symmetric};
 use std::time::Instant;
 
@@ -23,11 +22,11 @@ pub struct LawRoom {
 pub(super) fn over_arrays<T: Real, const D: usize>(
     body: &Body<T, D>,
 ) -> Option<(Custom<T>, &'static dyn LawOverArrays)> {
-    let Material::Custom(custom) = *body.material else { return None };
+    let Material::Custom(custom) = *body.matter.material else { return None };
     custom.law().over_arrays().filter(|_| !body.is_rigid()).map(|law| (custom, law))
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Whether a body has such a law.
     pub(super) fn has_laws_over_arrays(&self) -> bool {
         !self.settings.together.is_empty()

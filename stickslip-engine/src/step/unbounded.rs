@@ -6,9 +6,7 @@
 
 use super::Engine;
 use super::build::{mirrors, periods, spin};
-use super::pass::home;
 use super::state::Disorder;
-use crate::basis::Basis;
 use crate::body::Particle;
 use crate::geometry::{Bounds, Mirror, Shape, SiteLattice};
 use crate::grid::{Blocks, Periods, SIDE, addressable, locate};
@@ -197,7 +195,7 @@ fn count<const D: usize>(scene: &Scene, body: usize, boxes: &[Bounds]) -> usize 
     layer.fill(&pose).len()
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Motion of a body, if it is rigid and without bounds.
     pub(super) fn without_bounds(&self, body: usize) -> Option<&RigidMotion> {
         let unbounded = self.state.unbounded.iter().any(|unbounded| unbounded.body == body);
@@ -265,7 +263,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let Unbounded { body, sites: lattice, .. } = &self.state.unbounded[i];
         let (number, volume) = (*body, T::of(lattice.volume()));
         let motion = self.without_bounds(number).expect(ONLY_RIGID);
-        let (pose, density) = (motion.pose(), self.state.bodies[number].density);
+        let (pose, density) = (motion.pose(), self.state.bodies[number].matter.density);
         let particle = |i: usize| Particle {
             position: Vector::of(sites[i]),
             velocity: Vector::of(motion.velocity_at(pose.now(sites[i]))),
@@ -289,8 +287,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         if let Some(disorder) = self.workspace.disorder.get_mut(number) {
             *disorder = Disorder::any(particles.len());
         }
-        let base = |particle: usize| home::<T, D, B>(grid, particles.place(particle));
-        let counts = (number, particles.len(), B::WIDTH as i32 - 1);
+        let base = |particle: usize| (self.kernels.home)(grid, particles.place(particle));
+        let counts = (number, particles.len(), self.kernels.width as i32 - 1);
         self.workspace.active.replace(counts, (base, |particle: usize| particles.numbers()[particle]));
     }
 }

@@ -5,15 +5,15 @@
 use super::Engine;
 use super::build::spin;
 use super::mechanism::Coupling;
-use super::pass::{FaultKind, FaultReport, Found, ParticleFault, ParticleLoop, Pass, Verbs, escaped, home};
 use super::state::{Disorder, Settings, Workspace};
-use crate::basis::Basis;
+use crate::Kernels;
 use crate::body::Body;
 use crate::clock::signal_speed;
 use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Lattice, Node, locate, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
+use crate::pass::{FaultKind, FaultReport, Found, ParticleFault, ParticleLoop, Pass, Verbs};
 use crate::tensor::{Matrix, Vector};
 use crate::threads::{each, each_of};
 use crate::transfer::{SETTLES_EVERY, Share, begin_filter, end_filter, filter_once_more, filters, settles};
@@ -22,7 +22,7 @@ use std::time::Instant;
 /// Bodies that a thread takes at a time.
 const BODIES: usize = 16;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Brings the cell lists of the particles up to date, and with them the blocks of nodes that bodies have.
     pub(super) fn find_active_blocks(&mut self) {
         let mut start = Instant::now();
@@ -31,9 +31,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let left = self.workspace.listed.then_some(&self.workspace.left[..]);
         let idle = self.needs_no_grid();
         let count = |body: usize| if idle { 0 } else { bodies[body].particles.len() };
-        let reach = B::WIDTH as i32 - 1;
-        let base =
-            |body: usize, particle: usize| home::<T, D, B>(lattice, bodies[body].particles.place(particle));
+        let reach = self.kernels.width as i32 - 1;
+        let base = |body: usize, particle: usize| {
+            (self.kernels.home)(lattice, bodies[body].particles.place(particle))
+        };
         let number = |body: usize, particle: usize| bodies[body].particles.numbers()[particle];
         let blocks = if self.among.is_some() {
             let lost = |block: [i32; D]| self.among.as_ref().is_some_and(|among| among.has_lost(block));
@@ -317,13 +318,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             rules: &self.settings.rules,
             ahead,
             time: self.state.time,
-            width: B::WIDTH,
+            kernels: self.kernels,
             processor: match self.settings.path {
                 ParticleLoop::Lanes(processor) => processor,
                 _ => Processor::Any,
             },
         };
-        near.survey::<B>(&mut self.workspace.survey);
+        near.survey(&mut self.workspace.survey);
         self.watch.lap("contact detection", start);
     }
 
@@ -385,7 +386,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let start = Instant::now();
         let Settings { lattice, held, rigid, .. } = &self.settings;
         let (bodies, unbounded) = (Disjoint::new(&mut self.state.bodies), &self.state.unbounded);
-        let room = &mut self.workspace.displaced;
+        let (room, kernels) = (&mut self.workspace.displaced, self.kernels);
         room.clear();
         room.resize(rigid.len(), None);
         each(room, BODIES, |place, displaced| {
@@ -394,7 +395,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             let domain = held.filter(|_| !unbounded.iter().any(|unbounded| unbounded.body == i));
             // SAFETY: every body is listed once.
             let body = unsafe { bodies.get(i) };
-            *displaced = move_rigid_body::<T, D, B>((i, body), (lattice, domain), dt);
+            *displaced = move_rigid_body(kernels, (i, body), (lattice, domain), dt);
         });
         let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
         for (&i, displaced) in rigid.iter().zip(&self.workspace.displaced) {
@@ -449,7 +450,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
 }
 
 /// Moves a body, if it is rigid, with its particles; says what it found, and how many of them changed their cells.
-fn move_rigid_body<T: Laned, const D: usize, B: Basis<T>>(
+fn move_rigid_body<T: Laned, const D: usize>(
+    kernels: &Kernels<T, D>,
     (number, body): (usize, &mut Body<T, D>),
     (lattice, domain): (&Lattice<T, D>, Option<[Vector<T, D>; 2]>),
     dt: T,
@@ -463,7 +465,7 @@ fn move_rigid_body<T: Laned, const D: usize, B: Basis<T>>(
     for p in 0..body.particles.len() {
         let mut particle = body.particles.get(p);
         let (start, half_sides) = body.particles.place(p);
-        let before = home::<T, D, B>(lattice, (start, half_sides));
+        let before = (kernels.home)(lattice, (start, half_sides));
         let position = particle.position.space();
         let moved = Vector::of(motion.moved(position, &rotation, dt));
         let kind = if !moved.is_finite() {
@@ -473,10 +475,10 @@ fn move_rigid_body<T: Laned, const D: usize, B: Basis<T>>(
             particle.spin = spin::<T, D>(motion.spin());
             particle.position = moved;
             particle.deformation = turn * particle.deformation;
-            escaped::<T, D, B>((moved, half_sides), lattice, domain).then_some(FaultKind::Escaped)
+            kernels.escaped((moved, half_sides), lattice, domain).then_some(FaultKind::Escaped)
         };
         body.particles.set(p, &particle);
-        moved_on += u32::from(home::<T, D, B>(lattice, (particle.position, half_sides)) != before);
+        moved_on += u32::from((kernels.home)(lattice, (particle.position, half_sides)) != before);
         let fault =
             kind.map(|kind| ParticleFault { body: number, particle: p, number: particle.number, kind });
         // No wave runs in a rigid body.

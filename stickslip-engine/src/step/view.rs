@@ -6,7 +6,6 @@ use super::mechanism::JointSums;
 use super::relax::RelaxationProgress;
 use super::state::{ByBody, of_body};
 use super::walls::WallSums;
-use crate::basis::Basis;
 use crate::body::{Body, Particle, Totals};
 use crate::clock::{Fastest, fastest_motion};
 use crate::column::{ColumnDescription, Kind};
@@ -105,16 +104,16 @@ impl<T: Laned, const D: usize> ColumnSource for SnapshotRows<'_, T, D> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// What the particles of each body add up to, by body, summed once a step for whoever asks: on the first of several
     /// ranks of all, on the others of those of which they have particles.
     pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
-        let bodies = &self.state.bodies;
-        let sum = |range: Range<usize>| (range.start, bodies[range.start].totals());
+        let (bodies, kernels) = (&self.state.bodies, self.kernels);
+        let sum = |range: Range<usize>| (range.start, bodies[range.start].totals(kernels));
         known
             .get_or_insert_with(|| match &self.among {
-                Some(among) => among.totals(bodies),
+                Some(among) => among.totals(bodies, kernels),
                 None => by_parts(bodies.len(), 1, sum).into(),
             })
             .clone()
@@ -123,7 +122,9 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// What the particles of a body add up to.
     pub(super) fn totals_of(&self, body: usize) -> Totals {
         let body = &self.state.bodies[body];
-        self.among.as_ref().map_or_else(|| body.totals(), |among| among.totals_of(body))
+        self.among
+            .as_ref()
+            .map_or_else(|| body.totals(self.kernels), |among| among.totals_of(body, self.kernels))
     }
 
     /// What a snapshot has of some particles.
@@ -162,7 +163,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
+impl<T: Laned, const D: usize> View for Engine<T, D> {
     fn time(&self) -> f64 {
         self.state.time
     }
@@ -185,7 +186,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
 
     fn bodies(&self) -> Vec<BodyState> {
         let all = self.totals();
-        let spins = self.among.as_ref().map(|among| among.spins(&self.state.bodies, &all));
+        let spins = self.among.as_ref().map(|among| among.spins(&self.state.bodies, &all, self.kernels));
         if self.among.as_ref().is_some_and(|among| among.ranks.rank() > 0) {
             return Vec::new();
         }
@@ -220,7 +221,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> View for Engine<T, D, B> {
                 let Some(totals) = found else { return BodyState::default() };
                 let spin = match &spins {
                     Some(spins) => *of_body(spins, i).expect("what has a mass turns somehow"),
-                    None => body.spin(totals),
+                    None => body.spin(self.kernels, totals),
                 };
                 BodyState {
                     mass: totals.mass,

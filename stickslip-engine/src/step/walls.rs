@@ -1,7 +1,6 @@
 //! The verb that books reactions of the domain's faces, where the scene asks for them.
 
 use super::Engine;
-use crate::basis::Basis;
 use crate::exact::ExactSum;
 use crate::grid::nodes_per_block;
 use crate::lanes::Laned;
@@ -21,7 +20,7 @@ pub struct WallSums {
     pub moment: [f64; 3],
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Books what bodies did to the faces of the domain in the step.
     pub(super) fn account_walls(&mut self, dt: T) {
         let bodies = self.state.bodies.len();

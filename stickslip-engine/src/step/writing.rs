@@ -2,7 +2,6 @@
 
 use super::Engine;
 use super::build::spin;
-use crate::basis::Basis;
 use crate::body::Totals;
 use crate::door::{NoColumn, View, WRITABLE, WriteError, WrittenValues};
 use crate::lanes::Laned;
@@ -20,7 +19,7 @@ struct Holding {
     angular_momentum: [f64; 3],
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Gives the particles of a body other values in a column, see [`crate::door::Simulation::write`], and books what
     /// that changed.
     ///
@@ -54,14 +53,14 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
         let gravity = self.settings.gravity.constant().unwrap_or_default();
-        let before = Holding::of_particles(&self.state.bodies[number].totals(), gravity);
+        let before = Holding::of_particles(&self.state.bodies[number].totals(self.kernels), gravity);
         let particles = &mut self.state.bodies[number].particles;
         for entry in 0..entries {
             let line = particles.line_mut(first + entry).iter_mut();
             line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
         }
         particles.compare();
-        let after = Holding::of_particles(&self.state.bodies[number].totals(), gravity);
+        let after = Holding::of_particles(&self.state.bodies[number].totals(self.kernels), gravity);
         self.book_written(number, [before, after]);
         Ok(())
     }

@@ -21,8 +21,8 @@ use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::surfaces::SurfacesObserver;
 use super::{
-    ARRIVALS, BODIES, CONTACTS, Doubt, ENERGY, FABRIC, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS,
-    Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
+    ARRIVALS, BODIES, CONTACTS, Doubt, ENERGY, FABRIC, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS,
+    LOADS, Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
 };
 use crate::door::View;
 use crate::scene::{Leaving, Scene};

@@ -29,6 +29,7 @@ mod springs;
 mod suggestion;
 mod units;
 
+pub use crate::scheme::{BasisKind, Face, Transfer, VolumeChange};
 pub use body_list::BodyList;
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
@@ -236,24 +237,6 @@ pub struct Discretization {
     pub basis: BasisKind,
 }
 
-/// Shape functions between particles and grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum BasisKind {
-    /// Tent functions of the particle's centre.
-    Linear,
-    /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
-    #[default]
-    Gimp,
-    /// Mean tent functions of the corners of a domain that deforms with the particle (convected particle domain
-    /// interpolation; Sadeghirad, Brannon and Burghardt 2011).
-    Cpdi,
-    /// Quadratic B-splines of the particle's centre (Steffen, Kirby and Berzins 2008).
-    Spline,
-    /// Cubic ones.
-    Cubic,
-}
-
 /// A box that holds all material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
@@ -284,21 +267,6 @@ impl Leaving {
     fn stops(&self) -> bool {
         *self == Leaving::Stop
     }
-}
-
-/// What a face of the domain does. Faces other than `Open` lie on grid nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Face {
-    /// Nothing; material that reaches it stops the run.
-    #[default]
-    Open,
-    /// A mirror: no velocity through it, none of its resistance along it.
-    Symmetry,
-    /// Material sticks to it: no velocity at all.
-    Fixed,
-    /// What leaves through it comes in through the other face across its axis, which is periodic, too.
-    Periodic,
 }
 
 /// Time and how it is stepped.
@@ -373,23 +341,6 @@ pub enum StressUpdate {
     ModifiedLast,
 }
 
-/// What velocities particles take from the grid and give to it, see [`crate::transfer`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Transfer {
-    /// FLIP of particles that also carry the rotation of the material around them.
-    #[default]
-    Rflip,
-    /// FLIP: particles take the grid's change of velocity (Brackbill and Ruppel 1986).
-    Flip,
-    /// PIC: particles take the grid's velocity (Harlow 1964).
-    Pic,
-    /// XPIC(m): PIC that leaves alone what the grid resolves (Hammerquist and Nairn 2017).
-    Xpic,
-    /// APIC: particles take the grid's velocity and its affine field around them (Jiang et al. 2015).
-    Apic,
-}
-
 /// A material with its name and density.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NamedMaterial {
@@ -408,17 +359,6 @@ pub struct NamedMaterial {
 
 fn is_zero(number: &f64) -> bool {
     *number == 0.0
-}
-
-/// Whose change of volume a particle takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum VolumeChange {
-    /// Its own.
-    #[default]
-    Own,
-    /// The mean around the nodes that it reaches: cells of nearly incompressible material do not lock.
-    Averaged,
 }
 
 /// A body: a shape filled with a material, and how it moves at the start.

@@ -2,7 +2,6 @@
 
 use super::Find;
 use super::taking_up::first_problem;
-use crate::basis::Basis;
 use crate::door::{NotTakenUp, RestoreError, SavedBody, SavedColumn, SavedState, Simulation};
 use crate::lanes::Laned;
 use crate::ranks::{Ranks, combined};
@@ -13,7 +12,7 @@ use std::collections::{HashMap, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Lets bodies begin as those of the same names were in another run, whose state without particles is `rest`:
     /// `find` gives this rank some of the particles, and `look` sees the bodies with them. All of it stands on this
     /// rank's share of the scene, of which new bodies keep their particles.

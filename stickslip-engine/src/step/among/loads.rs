@@ -2,7 +2,6 @@
 
 use super::super::Engine;
 use super::super::loads::{ForeignPoint, LoadedNode, LoadedPoint, UNKNOWN, key_of};
-use crate::basis::Basis;
 use crate::exact::ExactSum;
 use crate::grid::{SentBlock, is_within, node_at, nodes_per_block, window_side};
 use crate::lanes::Laned;
@@ -37,7 +36,7 @@ pub(super) struct LeavingPoint {
 /// Points by the ranks to which they move.
 pub(super) type LeavingPoints = BTreeMap<usize, Vec<LeavingPoint>>;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Takes out the points that particles of a body carry which move to other ranks, by their places.
     pub(super) fn take_points_out(
         &mut self,
@@ -114,7 +113,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let (active, room) = (&self.workspace.active, &mut self.workspace.loads);
         room.foreign.clear();
         let Some(border) = active.border.as_deref() else { return };
-        let (n, side) = (nodes_per_block(D), window_side(B::WIDTH));
+        let (n, side) = (nodes_per_block(D), window_side(self.kernels.width));
         let blocks = active.blocks_sent();
         let mut sent: Vec<Vec<SentPoint>> = border.outgoing.iter().map(|_| Vec::new()).collect();
         let mut wanted: Vec<(usize, SentNode)> = Vec::new();

@@ -14,9 +14,7 @@ pub(crate) use taking_up::Find;
 
 use self::loads::LeavingPoints;
 use super::Engine;
-use super::pass::{FaultReport, home};
 use super::walls::WallBooks;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::boundary::Wall;
 use crate::contact::BlockSums;
@@ -29,6 +27,7 @@ use crate::grid::{
 use crate::lanes::Laned;
 use crate::material::Material;
 use crate::particles::{Particles, Shown, number_of, write_number};
+use crate::pass::FaultReport;
 use crate::ranks::{
     BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, bytes_of, combined, gathered,
     largest, message_to, read, told_first,
@@ -311,7 +310,7 @@ impl<T: Laned> Among<T> {
 /// Slots that a thread takes at a time.
 const SLOTS: usize = 8;
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Becomes one of several ranks, with its particles in its share of the blocks.
     pub(super) fn join(&mut self, ranks: Arc<dyn Ranks>, (partition, homes): (Partition, Vec<Home>)) {
         self.among = Some(Among {
@@ -415,7 +414,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
     /// The home block of a particle, in the first period.
     fn block_of(&self, particles: &Particles<T, D>, particle: usize) -> [i32; D] {
         let lattice = &self.settings.lattice;
-        lattice.periods.wrapped(locate(home::<T, D, B>(lattice, particles.place(particle))).0)
+        lattice.periods.wrapped(locate((self.kernels.home)(lattice, particles.place(particle))).0)
     }
 
     /// Lets the blocks know that there are other ranks.
@@ -501,7 +500,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
                 particles.fit();
             }
             self.workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(moves.len()));
-            let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
+            let base = |particle: usize| (self.kernels.home)(&lattice, particles.place(particle));
             self.workspace.active.renumber(body, &moves, base);
             self.workspace.loads.follow(&self.settings.loads, (body, &moves));
         }
@@ -510,7 +509,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
             read_particles(&message, (&mut state.bodies, kinds.as_ref()), &mut |body, first, particles| {
                 let count = particles.len() - first;
                 workspace.disorder.get_mut(body).into_iter().for_each(|disorder| disorder.add(count));
-                let base = |particle: usize| home::<T, D, B>(&lattice, particles.place(particle));
+                let base = |particle: usize| (self.kernels.home)(&lattice, particles.place(particle));
                 let number = |particle: usize| particles.numbers()[particle];
                 workspace.active.arrive((body, first..particles.len()), (base, number));
             });
@@ -573,7 +572,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
         let mut guests = Vec::new();
         let message = |traffic: &Traffic| {
             let mut message = Vec::new();
-            for (tile, seen) in active.seen_by(traffic, present, window_side(B::WIDTH)) {
+            for (tile, seen) in active.seen_by(traffic, present, window_side(self.kernels.width)) {
                 let cells = active.cells_of(tile);
                 message.extend_from_slice(&(tile.body as u32).to_le_bytes());
                 message.extend_from_slice(&active.home_of(tile).to_le_bytes());

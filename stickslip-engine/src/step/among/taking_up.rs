@@ -1,7 +1,6 @@
 //! A saved state, which ranks take up: each some of its particles, which then go to those that own their blocks.
 
 use super::{Home, read_particles, walk, write_particles};
-use crate::basis::Basis;
 use crate::door::{NotTakenUp, RestoreError, SavedShare, SavedState};
 use crate::lanes::Laned;
 use crate::ranks::{Census, Message, Ranks, combined, gathered, message_to};
@@ -27,7 +26,7 @@ pub(super) struct Found {
     first: Option<(u32, Vec<i32>)>,
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Takes up a state, of which `find` gives this rank some particles, as one of several ranks; before, it has no
     /// particles.
     ///

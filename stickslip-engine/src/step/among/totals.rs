@@ -2,6 +2,7 @@
 
 use super::super::state::{ByBody, of_body};
 use super::Among;
+use crate::Kernels;
 use crate::body::{Body, TotalSums, Totals, TurningSums};
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
@@ -17,10 +18,14 @@ type PackedSums = ByteBuf;
 impl<T: Laned> Among<T> {
     /// What the particles of each body on all ranks add up to, by body: the first knows it of all, the others of those
     /// of which they have particles.
-    pub fn totals<const D: usize>(&self, bodies: &[Body<T, D>]) -> Arc<ByBody<Totals>> {
+    pub fn totals<const D: usize>(
+        &self,
+        bodies: &[Body<T, D>],
+        kernels: &Kernels<T, D>,
+    ) -> Arc<ByBody<Totals>> {
         let found = self.rounded(
             bodies,
-            |_, it| packed(it.total_sums().all()),
+            |_, it| packed(it.total_sums(kernels).all()),
             |parts| {
                 let mut totals = TotalSums::default();
                 parts.iter().for_each(|part| unpack(part, totals.all()));
@@ -37,8 +42,8 @@ impl<T: Laned> Among<T> {
     }
 
     /// The same of a body.
-    pub fn totals_of<const D: usize>(&self, body: &Body<T, D>) -> Totals {
-        let mut sums = body.total_sums();
+    pub fn totals_of<const D: usize>(&self, body: &Body<T, D>, kernels: &Kernels<T, D>) -> Totals {
+        let mut sums = body.total_sums(kernels);
         self.add_up(sums.all());
         sums.rounded()
     }
@@ -48,10 +53,11 @@ impl<T: Laned> Among<T> {
         &self,
         bodies: &[Body<T, D>],
         totals: &ByBody<Totals>,
+        kernels: &Kernels<T, D>,
     ) -> Vec<(usize, [f64; 3])> {
         let turning = |body: usize, it: &Body<T, D>| {
             let totals = of_body(totals, body).expect("it has particles here");
-            packed(it.turning_sums(totals, it.gyration()).all())
+            packed(it.turning_sums(kernels, totals).all())
         };
         let found = self.rounded(bodies, turning, |parts| {
             let mut sums = TurningSums::default();

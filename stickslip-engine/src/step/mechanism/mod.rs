@@ -29,7 +29,6 @@ pub use surfaces::RigidSurfaces;
 
 use super::Engine;
 use super::loads::ForceOnBody;
-use crate::basis::Basis;
 use crate::body::Body;
 use crate::contact::RigidTouch;
 use crate::lanes::Laned;
@@ -164,7 +163,7 @@ impl FreeBody {
     }
 }
 
-impl<T: Laned, const D: usize, B: Basis<T>> Engine<T, D, B> {
+impl<T: Laned, const D: usize> Engine<T, D> {
     /// Takes up the free bodies as they are, before the step's first contact.
     pub(super) fn find_free_bodies(&mut self) {
         if self.settings.free.is_empty() {
