@@ -104,9 +104,9 @@ fn principal(mut matrix: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let tangent = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
         let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
         let sine = tangent * cosine;
-        for k in 0..3 {
-            let [a, b] = [matrix[k][p], matrix[k][q]];
-            (matrix[k][p], matrix[k][q]) = (cosine * a - sine * b, sine * a + cosine * b);
+        for row in &mut matrix {
+            let [a, b] = [row[p], row[q]];
+            (row[p], row[q]) = (cosine * a - sine * b, sine * a + cosine * b);
         }
         for k in 0..3 {
             let [a, b] = [matrix[p][k], matrix[q][k]];

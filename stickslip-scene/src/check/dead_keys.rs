@@ -110,7 +110,7 @@ mod tests {
              {{ name = 'b', material = 'iron', shape.ball = {{ center = [3, 0], radius = 1 }}, rigid = {{}} }} ]\n\
              {rest}\n"
         );
-        let text = if rest.contains("time.") { text } else { text + "time.end = 1\n" };
+        let text = if rest.contains("time") { text } else { text + "time.end = 1\n" };
         let scene =
             crate::scene::parse("dead.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
         let warnings = report(&scene).expect("no problem").warnings;

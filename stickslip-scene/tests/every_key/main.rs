@@ -95,9 +95,22 @@ fn read(scene: &str, set: &[(&str, &str)]) -> Result<Loaded, SceneError> {
         (PathBuf::from("part.obj"), TETRAHEDRON.as_bytes().to_vec()),
         (PathBuf::from("other.obj"), TETRAHEDRON.replace("v 0 0 1", "v 0 0 2").into_bytes()),
     ]);
+    // What has no dot would be a parameter.
+    let (whole, parts): (Vec<_>, Vec<_>) = set.iter().partition(|(key, _)| !key.contains(['.', '[']));
+    let mut text: toml::Table = scene.parse().expect("the scene is TOML");
+    for (key, value) in whole {
+        let read = format!("value = {value}").parse::<toml::Table>().ok();
+        let value = read.and_then(|mut table| table.remove("value"));
+        text.insert(key.to_string(), value.unwrap_or_else(|| toml::Value::String(value_of(set, key))));
+    }
     let set: Vec<(String, String)> =
-        set.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-    scene::parse_beside("a.toml", scene, &set, &files)
+        parts.into_iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    scene::parse_beside("a.toml", &text.to_string(), &set, &files)
+}
+
+/// The word that a key is set to.
+fn value_of(set: &[(&str, &str)], key: &str) -> String {
+    set.iter().find(|(other, _)| *other == key).map_or(String::new(), |(_, value)| value.to_string())
 }
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";

@@ -142,7 +142,7 @@ fn joints() {
             (
                 "slider = { axis = [1, 0], force = \"1 kN\" }",
                 "planar = {}",
-                "28:1: joints[1].planar: found a joint that does nothing; allowed: a `torque`, `speed`, `stiffness` or \
+                "30:1: joints[1].planar: found a joint that does nothing; allowed: a `torque`, `speed`, `stiffness` or \
                  `dashpot`: in the plane a body moves so without a joint",
             ),
             (

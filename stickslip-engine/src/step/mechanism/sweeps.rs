@@ -236,7 +236,7 @@ const MAX_ROUNDS: usize = 100;
 const FEWEST_ROUNDS: usize = 10;
 const ROWS_OF_ALL_ROUNDS: usize = 30_000;
 /// More rows than these are left to sweeps.
-const MOST_ROWS: usize = 10_000;
+const MOST_ROWS: usize = 7_000;
 /// A direct step may take so many products of blocks a row: then it costs as much as some ten sweeps.
 const AFFORDABLE: usize = 40;
 
@@ -393,5 +393,89 @@ impl<const N: usize> Found<N> {
             }
         }
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::six::{SixFactor, at, join};
+    use super::*;
+    use crate::tensor::Matrix;
+
+    const MASS: f64 = 20.0;
+    /// What gravity gives in a step [m/s].
+    const FALL: f64 = 0.02;
+
+    /// A tower of boxes, 0.2 m by 0.1 m, that touch at their corners and between them: rows of their contacts, from the
+    /// floor up, with the bodies' inertia.
+    fn tower(count: usize, friction: f64) -> (Vec<Vec<Row>>, Vec<SixMatrix>, Grip) {
+        let arm = |body: usize, [x, y]: [f64; 2]| [x, y - 0.1 * body as f64 - 0.05, 0.0];
+        let mut all = Vec::new();
+        for body in 0..count {
+            for x in [-0.1, 0.1, 0.02] {
+                let (below, place) = (body.checked_sub(1), [x, 0.1 * body as f64]);
+                let row = |way: [f64; 3]| {
+                    let other = below.map_or([0.0; 6], |below| at(arm(below, place), way.map(|x| -x)));
+                    Row::new([Some(body), below], [at(arm(body, place), way), other])
+                };
+                all.push(vec![row([0.0, 1.0, 0.0]), row([1.0, 0.0, 0.0])]);
+            }
+        }
+        let turning = Matrix::IDENTITY * (MASS * 0.05 / 12.0);
+        let inertia = vec![SixMatrix::inertia(MASS, &turning); count];
+        (all, inertia, Grip { friction, ..Grip::default() })
+    }
+
+    /// Thirty boxes that fall onto each other from rest: none moves, and each bears the weight above. By sweeps alone
+    /// that would take some thousands.
+    #[test]
+    fn a_tower_bears_its_weight_in_one_step() {
+        let count = 30;
+        let (all, inertia, grip) = tower(count, 0.5);
+        let factors: Vec<SixFactor> = inertia.iter().map(SixMatrix::factor).collect();
+        let rows = all.into_iter().flatten().map(|mut row| {
+            row.respond(&factors);
+            Packed::<3>::new(&row, count)
+        });
+        let mut changes = vec![pack(&join([0.0, -FALL, 0.0], [0.0; 3])); count];
+        changes.push([0.0; 3]);
+        let mut found = Found { rows: rows.collect(), changes };
+        let contacts = Contacts { grips: vec![grip; 3 * count], width: 2 };
+        assert!(found.settle((&[], &contacts), &inertia, 0.0), "it does not rest");
+        let fastest = found.changes.iter().flatten().fold(0.0_f64, |most, v| most.max(v.abs()));
+        assert!(fastest < 1e-4 * FALL, "{fastest}");
+        for (body, own) in found.rows.chunks_exact(6).enumerate() {
+            let push: f64 = own.iter().step_by(2).map(|row| row.impulse).sum();
+            let weight = (count - body) as f64 * MASS * FALL;
+            assert!((push / weight - 1.0).abs() < 1e-4, "box {body}: {push} of {weight}");
+        }
+    }
+
+    /// The impulses of a direct step are those of sweeps without end: a box that is pushed, slips and tips.
+    #[test]
+    fn a_direct_step_finds_what_sweeps_find() {
+        for (push, spin) in [(0.0, 0.0), (0.03, 0.0), (0.5, 0.0), (0.01, 0.4)] {
+            let (all, inertia, grip) = tower(1, 0.3);
+            let factors: Vec<SixFactor> = inertia.iter().map(SixMatrix::factor).collect();
+            let rows = all.into_iter().flatten().map(|mut row| {
+                row.respond(&factors);
+                Packed::<3>::new(&row, 1)
+            });
+            let begun = Found { rows: rows.collect(), changes: vec![[push, -FALL, spin], [0.0; 3]] };
+            let contacts = Contacts { grips: vec![grip; 3], width: 2 };
+            let (mut swept, mut solved) = (begun.clone(), begun);
+            for _ in 0..20_000 {
+                swept.sweep(&[], &contacts);
+            }
+            assert!(solved.settle((&[], &contacts), &inertia, 0.0));
+            for (a, b) in swept.changes[0].iter().zip(&solved.changes[0]) {
+                assert!(
+                    (a - b).abs() < 1e-8 * FALL,
+                    "{push} {spin}: {:?} {:?}",
+                    swept.changes,
+                    solved.changes
+                );
+            }
+        }
     }
 }

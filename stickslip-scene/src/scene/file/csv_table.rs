@@ -157,7 +157,7 @@ fn place(column: &DocumentNode, heads: &[&str]) -> Result<usize, (String, String
             let is_it = |head: &&str| {
                 head.eq_ignore_ascii_case(text) || split(head).0.eq_ignore_ascii_case(text.trim())
             };
-            heads.iter().position(|head| is_it(&head)).ok_or_else(|| {
+            heads.iter().position(is_it).ok_or_else(|| {
                 (format!("no column `{text}`"), format!("one of those that it names: {}", heads.join(", ")))
             })
         }

@@ -29,8 +29,7 @@ impl Check for SelfContactCheck {
     }
 
     fn advice(&self, _: &Scene) -> &'static str {
-        "parts of one body share their nodes: they are pushed up to a cell early, and stick; make bodies of the parts \
-         that meet, or smaller cells, by which it is less early"
+        "they are pushed up to a cell early, and stick: make bodies of the parts that meet, or take smaller cells"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
@@ -41,7 +40,7 @@ impl Check for SelfContactCheck {
             let free: Vec<usize> = look.free().collect();
             counts(look.simulation, &free).into_iter().map(|(count, _)| count).sum()
         });
-        if all > FEW && turn % SELDOM != 0 {
+        if all > FEW && !turn.is_multiple_of(SELDOM) {
             return Vec::new();
         }
         let cell = look.scene.discretization.cell;
