@@ -4,7 +4,7 @@ use flate2::Crc;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
-use stickslip::observe::replace;
+use stickslip::observe::{replace, replace_by};
 
 /// How files of a kind are known, and those of the program among them.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +45,8 @@ const SIGNATURE: &str = "# Made by Stickslip, and made anew as long as nobody ch
 /// Bytes at either end of a file in which its mark lies.
 const NEAR: u64 = 4096;
 
-/// Writes a file under another name (`.part` appended) and renames it when it is complete. One that is there already is
-/// replaced if it is empty, or of the same kind and made by the program.
+/// Writes a file under a name of its own and renames it when it is complete. One that is there already is replaced if
+/// it is empty, or of the same kind and made by the program.
 ///
 /// # Errors
 /// What the system says, and another file in the place; nothing is changed then.
@@ -57,6 +57,15 @@ pub fn write(
 ) -> io::Result<()> {
     replaceable(path, kind)?;
     replace(path, write).map_err(|error| error.source)
+}
+
+/// The same of a file that another program fills, under the name that it is given.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_by(path: &Path, kind: Kind, write: impl FnOnce(&Path) -> io::Result<()>) -> io::Result<()> {
+    replaceable(path, kind)?;
+    replace_by(path, write).map_err(|error| error.source)
 }
 
 /// Writes a scene, and its sum behind it. One that is there already is replaced if it is empty, or was written so and

@@ -95,14 +95,25 @@ fn by_ffmpeg(
     images: impl Iterator<Item = io::Result<Image>>,
     rate: f64,
 ) -> io::Result<()> {
-    files::replaceable(path, kind)?;
+    files::write_by(path, kind, |part| fill_by_ffmpeg((path, part), codec, images, rate))
+}
+
+/// The same into a file that is there under a name of its own.
+fn fill_by_ffmpeg(
+    (path, part): (&Path, &Path),
+    codec: &[&str],
+    images: impl Iterator<Item = io::Result<Image>>,
+    rate: f64,
+) -> io::Result<()> {
+    let container = if FilmKind::of(path) == Some(FilmKind::Webm) { "webm" } else { "mp4" };
+    let codec = [codec, &["-f", container]].concat();
     let mut running: Option<(Child, [usize; 2])> = None;
     let mut written = Ok(());
     for image in images {
         let image = image?;
         let (child, size) = match &mut running {
             Some(running) => running,
-            None => running.insert((ffmpeg(path, codec, (&image, rate))?, image.size)),
+            None => running.insert((ffmpeg(part, &codec, (&image, rate))?, image.size)),
         };
         if image.size != *size {
             return Err(io::Error::new(ErrorKind::InvalidInput, "an animation of images of different sizes"));

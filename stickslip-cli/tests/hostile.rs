@@ -512,17 +512,124 @@ fn an_interval_of_nothing_neither_hangs_nor_holds_a_run_that_is_to_end() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
-/// A full disk leaves no file that holds nothing.
+/// A limit on the length of files leaves none that is cut.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_picture_that_finds_no_space_is_not_there() {
     let workplace = workplace();
     assert_eq!(run(&workplace, &[]).code, Some(0));
+    let program = workplace.command(&[]).get_program().to_str().unwrap().to_owned();
     for (command, name) in [("render", "picture.png"), ("plot", "plot.svg"), ("network", "graph.graphml")] {
-        std::os::unix::fs::symlink("/dev/full", workplace.path(&format!("{name}.part"))).unwrap();
-        let ran = workplace.run(&[command, "scene.results", "--out", name]);
-        assert_eq!(ran.code, Some(1), "{command}");
-        assert!(ran.stderr.contains(name) && ran.stderr.contains("space"), "{command}: {}", ran.stderr);
-        assert!(!workplace.path(name).exists(), "{command}");
+        // Blocks of 1024 bytes.
+        let line = format!("ulimit -f 1; exec '{program}' {command} scene.results --out {name}");
+        let ran = std::process::Command::new("bash")
+            .args(["-c", &line])
+            .current_dir(workplace.path(""))
+            .output()
+            .unwrap();
+        let said = String::from_utf8(ran.stderr).unwrap();
+        if workplace.path(name).exists() {
+            assert!(fs::metadata(workplace.path(name)).unwrap().len() <= 1024, "{command}: {said}");
+            continue;
+        }
+        assert_eq!(ran.status.code(), Some(1), "{command}: {said}");
+        assert!(said.contains(name) && said.contains("File too large"), "{command}: {said}");
     }
+    assert!(!workplace.path("picture.png").exists());
+    let names = fs::read_dir(workplace.path("")).unwrap().map(|entry| entry.unwrap().file_name());
+    assert!(names.into_iter().all(|name| !name.to_string_lossy().ends_with(".part")));
+}
+
+/// Files are made under names that nobody has: one that is called so, or a link, is the user's.
+#[test]
+#[cfg(unix)]
+fn files_that_are_called_like_a_part_stay_and_links_are_not_followed() {
+    use std::os::unix::fs::symlink;
+    let workplace = workplace();
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    workplace.write("target", "victim");
+    for (command, name) in [
+        (&["render"][..], "picture.png"),
+        (&["plot"], "plot.svg"),
+        (&["network"], "graph.graphml"),
+        (&["view", "--html"], "page.html"),
+        (&["render", "--animate"], "film.gif"),
+    ] {
+        let beside = workplace.path(&format!("{name}.part"));
+        let words = match command {
+            ["view", html] => vec!["view", "scene.results", html, name],
+            _ => [&command[..1], &["scene.results", "--out", name], &command[1..]].concat(),
+        };
+        for is_link in [false, true] {
+            if is_link {
+                fs::remove_file(&beside).unwrap();
+                symlink(workplace.path("target"), &beside).unwrap();
+            } else {
+                fs::write(&beside, "precious").unwrap();
+            }
+            let ran = workplace.run(&words);
+            assert_eq!(ran.code, Some(0), "{words:?}: {}", ran.stderr);
+            assert!(fs::symlink_metadata(workplace.path(name)).unwrap().is_file());
+            assert_eq!(fs::read_to_string(&beside).unwrap(), if is_link { "victim" } else { "precious" });
+            assert_eq!(beside.is_symlink(), is_link);
+        }
+        // A link of the name itself, to nowhere or to somebody's.
+        fs::remove_file(workplace.path(name)).unwrap();
+        symlink(workplace.path("nowhere"), workplace.path(name)).unwrap();
+        assert_eq!(workplace.run(&words).code, Some(0), "{words:?}");
+        assert!(!workplace.path("nowhere").exists(), "{name}");
+    }
+    assert_eq!(fs::read_to_string(workplace.path("target")).unwrap(), "victim");
+}
+
+/// A folder of somebody's, reached by a link among results, is neither cleared nor written to.
+#[test]
+#[cfg(unix)]
+fn links_among_results_are_refused() {
+    let workplace = workplace();
+    fs::create_dir(workplace.path("elsewhere")).unwrap();
+    workplace.write("elsewhere/00000.vtu", "mine");
+    assert_eq!(run(&workplace, &[]).code, Some(0));
+    fs::remove_dir_all(workplace.path("scene.results/particles")).unwrap();
+    std::os::unix::fs::symlink("../elsewhere", workplace.path("scene.results/particles")).unwrap();
+    refused(&run(&workplace, &[]), "particles is a link");
+    refused(&run(&workplace, &["--overwrite"]), "particles is a link");
+    refused(&workplace.run(&["resume", "scene.results", "--until", "30 ms"]), "particles is a link");
+    assert_eq!(fs::read_to_string(workplace.path("elsewhere/00000.vtu")).unwrap(), "mine");
+    assert_eq!(fs::read_dir(workplace.path("elsewhere")).unwrap().count(), 1);
+    // The whole folder may be one.
+    std::os::unix::fs::symlink("elsewhere", workplace.path("linked")).unwrap();
+    fs::remove_file(workplace.path("elsewhere/00000.vtu")).unwrap();
+    assert_eq!(run(&workplace, &["--out", "linked"]).code, Some(0));
+}
+
+/// Of a run, and of a sweep, before its record is whole: what is left is no reason to refuse a folder.
+#[test]
+fn a_kill_inside_the_first_record_leaves_a_folder_that_is_used() {
+    let workplace = workplace();
+    for (left, words) in [
+        ("run.json.part", &["run", "scene.toml", "--out", "out"][..]),
+        ("run.json.0a1b2c3d.part", &["run", "scene.toml", "--out", "out"]),
+        ("sweep.json.0a1b2c3d.part", &["sweep", "scene.toml", "--out", "out", "--set", "friction=0.2,0.3"]),
+    ] {
+        for more in [&[][..], &["--overwrite"]] {
+            let _ = fs::remove_dir_all(workplace.path("out"));
+            fs::create_dir(workplace.path("out")).unwrap();
+            workplace.write(&format!("out/{left}"), "{\"program\": \"sti");
+            if words[0] == "run" {
+                // Which scene it was, nobody knows.
+                refused(&workplace.run(&["resume", "out"]), "run.json");
+            } else if !more.is_empty() {
+                continue;
+            }
+            let ran = workplace.run(&[words, more, &QUICK].concat());
+            assert_eq!(ran.code, Some(0), "{left}: {}", ran.stderr);
+            assert!(!workplace.path(&format!("out/{left}")).exists());
+        }
+    }
+    // What is somebody else's still is.
+    fs::create_dir(workplace.path("mine")).unwrap();
+    workplace.write("mine/run.json.part", "{");
+    workplace.write("mine/thesis.tex", "years of work");
+    refused(&run(&workplace, &["--out", "mine"]), "thesis.tex");
 }

@@ -339,7 +339,7 @@ fn a_run_without_checkpoints_has_nothing_to_go_on_from() {
     workplace.succeed(&[&["run", "scene.toml"][..], &settings].concat());
     let ran = workplace.run(&["resume", "scene.results", "--until", "0.04"]);
     assert_eq!(ran.code, Some(2));
-    assert!(ran.stderr.contains("ended before its first checkpoint"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("finished without a checkpoint"), "{}", ran.stderr);
     let foreign = workplace.run(&["resume", "."]);
     assert_eq!(foreign.code, Some(2));
     assert!(foreign.stderr.contains("run.json"), "{}", foreign.stderr);

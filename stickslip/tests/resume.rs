@@ -13,9 +13,10 @@ mod same_run;
 use same_run::{StopAfter, assert_same_run, files, options};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, OutputFolder, Patience, Status};
+use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, Patience, Status, Waiting, Writer};
 use stickslip::run::{Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with};
 use stickslip::scene::{Scene, parse};
 
@@ -792,29 +793,27 @@ fn a_state_that_is_none_is_refused() {
     assert_eq!(fresh.snapshot(), simulation.snapshot());
 }
 
-/// A frame meets a device that is full, then there is space again.
+/// A frame finds a folder in its place, which is then removed.
 #[test]
-#[cfg(target_os = "linux")]
-fn a_run_that_met_a_full_disk_goes_on_once_there_is_space() {
+fn a_run_that_could_not_write_goes_on_once_it_can() {
     let scene = scene(PLANE);
     let folder = tempfile::tempdir().unwrap();
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     start(&scene, &whole).unwrap();
-    let part = parts.join("particles/00005.vtu.part");
-    let mut full = FullDisk { part: part.clone(), after: 60 };
+    let place = parts.join("particles/00005.vtu");
+    let mut obstacle = Obstacle { place: place.clone(), after: 60 };
     let mut simulation = stickslip::step::build(&scene).unwrap();
-    let error =
-        run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut full], &mut |_| {}).unwrap_err();
+    let error = run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut obstacle], &mut |_| {});
+    let error = error.unwrap_err();
     assert!(matches!(error, RunError::Output(_)) && error.to_string().contains("00005.vtu"), "{error}");
-    let _ = fs::remove_file(&part);
+    fs::remove_dir(&place).unwrap();
     go_on(&scene, &parts).unwrap();
     assert_same_run(&whole, &parts);
 }
 
 /// A checkpoint that cannot be written costs the run nothing but a warning.
 #[test]
-#[cfg(target_os = "linux")]
-fn a_checkpoint_that_finds_no_space_is_told_of_and_the_run_goes_on() {
+fn a_checkpoint_that_cannot_be_written_is_told_of_and_the_run_goes_on() {
     let mut scene = scene(PLANE);
     // None is due at the end but the last.
     scene.outputs.checkpoints = Some(0.07);
@@ -822,36 +821,40 @@ fn a_checkpoint_that_finds_no_space_is_told_of_and_the_run_goes_on() {
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     let expected = start(&scene, &whole).unwrap();
     let steps = expected.performance.steps;
-    let part = Checkpoint::path(&parts, steps).with_extension("checkpoint.part");
-    let mut full = FullDisk { part: part.clone(), after: steps - 5 };
+    let place = Checkpoint::path(&parts, steps);
+    let mut obstacle = Obstacle { place: place.clone(), after: steps - 5 };
     let mut simulation = stickslip::step::build(&scene).unwrap();
-    let found = run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut full], &mut |_| {}).unwrap();
+    let found = run_with(&scene, &mut *simulation, &options(&parts), &mut [&mut obstacle], &mut |_| {});
+    let found = found.unwrap();
     assert_eq!(found.status, Status::Finished);
     let warning = found.warnings.iter().find(|warning| warning.kind == "checkpoint").expect("it is told");
-    assert!(warning.message.contains(".checkpoint") && warning.message.contains("space"), "{warning:?}");
+    assert!(warning.message.contains(".checkpoint") && warning.message.contains("irectory"), "{warning:?}");
     assert_eq!(files(&whole), files(&parts));
-    assert!(!part.exists() && !Checkpoint::list(&parts).unwrap().is_empty());
+    fs::remove_dir(&place).unwrap();
+    let left = fs::read_dir(Checkpoint::folder(&parts)).unwrap().map(|entry| entry.unwrap().path());
+    let left: Vec<_> = left.collect();
+    assert!(
+        !left.is_empty() && left.iter().all(|path| path.extension().unwrap() == "checkpoint"),
+        "{left:?}"
+    );
     go_on(&scene, &parts).unwrap();
     assert_same_run(&whole, &parts);
 }
 
-/// Puts a device that is full in the place of a file to come.
-#[cfg(target_os = "linux")]
-struct FullDisk {
-    part: PathBuf,
+/// Puts a folder in the place of a file to come.
+struct Obstacle {
+    place: PathBuf,
     after: u64,
 }
 
-#[cfg(target_os = "linux")]
-impl stickslip::observe::Observer for FullDisk {
+impl stickslip::observe::Observer for Obstacle {
     fn next(&self) -> f64 {
         0.0
     }
 
     fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
-        if view.steps() >= self.after && !self.part.is_symlink() {
-            fs::create_dir_all(self.part.parent().unwrap()).unwrap();
-            std::os::unix::fs::symlink("/dev/full", &self.part).unwrap();
+        if view.steps() >= self.after {
+            fs::create_dir_all(&self.place).unwrap();
         }
         Ok(())
     }
@@ -889,45 +892,66 @@ fn a_run_stops_when_its_time_is_up_and_goes_on() {
     assert_same_run(&whole, &parts);
 }
 
-/// A pipe that nobody reads stands in the place of a snapshot: the user is told once, and the end of the run's time
-/// holds. Once somebody reads, the disk is back, and the run goes on.
+/// A writer of its own gets nothing onto the disk: the user is told once, and the end of the run's time holds. Once the
+/// disk is back, the run goes on.
 #[test]
-#[cfg(unix)]
 fn a_disk_that_stands_still_is_told_of_and_does_not_hold_a_run_that_is_to_stop() {
     use std::sync::atomic::AtomicUsize;
+    use std::sync::mpsc::{Receiver, channel};
     static TOLD: AtomicUsize = AtomicUsize::new(0);
+    struct Stuck(Writer<Receiver<()>>);
+    impl stickslip::observe::Observer for Stuck {
+        fn next(&self) -> f64 {
+            0.0
+        }
+
+        fn observe(&mut self, view: &dyn stickslip::door::View) -> Result<(), OutputError> {
+            // Until the other end is dropped.
+            let write = |disk: &mut Receiver<()>| {
+                let _ = disk.recv();
+                Ok(())
+            };
+            if view.steps() >= 60 { self.0.ask(write) } else { Ok(()) }
+        }
+    }
     let scene = scene(PLANE);
     let folder = tempfile::tempdir().unwrap();
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     start(&scene, &whole).unwrap();
-    start_and_stop(&scene, &parts, 60);
-    let next = stickslip::observe::Results::open(&parts).unwrap().frames().len();
-    let pipe = parts.join(format!("particles/{next:05}.vtu.part"));
-    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     let patience = Patience {
         told_after: Duration::from_millis(100),
         given_up_after: Duration::from_millis(300),
         tell: |path, _| {
-            assert!(path.ends_with("particles"));
+            assert!(path.ends_with("stuck"));
             TOLD.fetch_add(1, Ordering::Relaxed);
         },
         ..Patience::default()
     };
-    let patient = RunOptions { patience, max_time: Some(Duration::from_millis(600)), ..options(&parts) };
-    let mut simulation = stickslip::step::build(&scene).unwrap();
-    let begun = std::time::Instant::now();
-    let error = resume(&scene, &mut *simulation, &patient, &mut |_| {}).unwrap_err();
-    assert!(error.to_string().contains("particles: the disk has taken nothing for"), "{error}");
-    assert_eq!(TOLD.load(Ordering::Relaxed), 1);
-    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
-    assert_eq!(Manifest::read(&parts).unwrap().status, Status::Failed);
-
-    std::io::copy(&mut fs::File::open(&pipe).unwrap(), &mut std::io::sink()).unwrap();
-    // Until the thread that was left to itself has ended, the folder is its own.
-    while OutputFolder::reopen(&parts).is_err() {
-        // It opens what it wrote once more, and a pipe opens with a partner only.
-        let _partner = fs::OpenOptions::new().read(true).write(true).open(pipe.with_extension(""));
-        std::thread::sleep(Duration::from_millis(10));
+    for interrupted in [false, true] {
+        TOLD.store(0, Ordering::Relaxed);
+        let (disk, writes) = channel();
+        let longest = Duration::from_secs(3);
+        let max_time = (!interrupted).then_some(longest);
+        let stuck = RunOptions { patience: patience.clone(), max_time, ..options(&parts) };
+        let stop = stuck.stop.clone();
+        let begun = std::time::Instant::now();
+        let until = max_time.map(|longest| begun + longest);
+        let waiting = Arc::new(Waiting::new(patience.clone(), stop.clone(), until));
+        let mut observer = Stuck(Writer::start(writes, &parts.join("stuck"), &waiting).unwrap());
+        let mut simulation = stickslip::step::build(&scene).unwrap();
+        let error = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(longest);
+                stop.store(interrupted, Ordering::Relaxed);
+            });
+            run_with(&scene, &mut *simulation, &stuck, &mut [&mut observer], &mut |_| {}).unwrap_err()
+        });
+        // An end of time that comes before the sixtieth step is no fault of the disk.
+        assert!(error.to_string().contains("stuck: the disk has taken nothing for"), "{error}");
+        assert_eq!(TOLD.load(Ordering::Relaxed), 1);
+        assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+        assert_eq!(Manifest::read(&parts).unwrap().status, Status::Failed);
+        drop(disk);
     }
     go_on(&scene, &parts).unwrap();
     assert_same_run(&whole, &parts);

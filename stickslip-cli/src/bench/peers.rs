@@ -8,6 +8,7 @@ use crate::tell::tell;
 use miette::miette;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use stickslip::observe::{OutputError, replace};
 
 /// Taichi and NVIDIA Warp from the Python package index.
 pub struct Peers {
@@ -63,8 +64,10 @@ impl Peers {
     fn run(&self, python: &Path, program: &str, script: &str) -> Result<Vec<PeerResult>, Failure> {
         let write = |name: &str, text: &str| {
             let path = self.environment.join(name);
-            std::fs::write(&path, text)
-                .map_err(|error| Failure::Run(miette!("cannot write {}: {error}", path.display())))
+            replace(&path, |file| file.write_all(text.as_bytes()))
+                .map_err(|OutputError { source: error, .. }| {
+                    Failure::Run(miette!("cannot write {}: {error}", path.display()))
+                })
                 .map(|()| path)
         };
         write("cube.py", CUBE)?;

@@ -6,7 +6,7 @@ mod measures;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use stickslip::observe::{ReadError, Results};
+use stickslip::observe::{ReadError, Results, replace};
 
 /// A scene of the gallery.
 #[derive(Debug)]
@@ -178,7 +178,9 @@ impl Exhibit {
                 return Err(io::Error::new(io::ErrorKind::AlreadyExists, what));
             }
         }
-        all.into_iter().try_for_each(|(name, bytes)| fs::write(folder.join(name), bytes))?;
+        for (name, bytes) in all {
+            replace(&folder.join(name), |file| file.write_all(bytes)).map_err(|error| error.source)?;
+        }
         Ok(folder.join(scene))
     }
 }

@@ -5,10 +5,11 @@ use super::plan::Plan;
 use crate::failure::Failure;
 use miette::miette;
 use serde::{Deserialize, Serialize};
+use std::ffi::OsStr;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use stickslip::observe::replace;
+use stickslip::observe::{replace, whole_name};
 
 /// What was swept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -113,7 +114,7 @@ pub fn prepare(folder: &Path, record: &SweepRecord, kept: &[&str]) -> Result<(),
     if !is_sweep(folder) {
         for entry in fs::read_dir(folder).map_err(unusable)? {
             let entry = entry.map_err(unusable)?;
-            if Some(entry.path()) == own {
+            if Some(entry.path()) == own || is_of_killed(&entry.path()) {
                 continue;
             }
             return Err(Failure::Input(miette!(
@@ -122,6 +123,12 @@ pub fn prepare(folder: &Path, record: &SweepRecord, kept: &[&str]) -> Result<(),
                 folder.display(),
                 entry.file_name().display()
             )));
+        }
+    }
+    for entry in fs::read_dir(folder).map_err(unusable)? {
+        let path = entry.map_err(unusable)?.path();
+        if path.file_name().and_then(OsStr::to_str).and_then(whole_name) == Some(RECORD) {
+            fs::remove_file(&path).map_err(unusable)?;
         }
     }
     let text = serde_json::to_vec_pretty(record).expect("a record is plain data");
@@ -137,6 +144,14 @@ pub fn prepare(folder: &Path, record: &SweepRecord, kept: &[&str]) -> Result<(),
         fs::create_dir(&rows).map_err(unusable)?;
     }
     write(&folder.join(RECORD), &text).map_err(unusable)
+}
+
+/// Whether a sweep that is killed before its record is whole leaves this: the half of that, or the folder of rows, with
+/// none in it.
+fn is_of_killed(path: &Path) -> bool {
+    let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+    let is_empty = || fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
+    whole_name(name) == Some(RECORD) || name == ROWS && is_empty()
 }
 
 /// Where the row of a run is.

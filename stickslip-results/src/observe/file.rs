@@ -4,8 +4,10 @@ use super::work::took;
 use crate::scene::escaped;
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
+use std::ffi::OsStr;
 use std::fmt::Display;
 use std::fs::{self, File};
+use std::hash::{BuildHasher, RandomState};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -49,18 +51,18 @@ fn remedy(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "free some space, or ask for outputs less often; everything written before can be read, and \
-             `stickslip resume` goes on from the last checkpoint, if there is one"
+             `stickslip resume` goes on from the last checkpoint, or begins anew where there is none"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "give a folder that you may write to"
         }
         io::ErrorKind::NotFound => {
             "was it moved or removed? `stickslip resume` goes on where it is now, or once it is back, from the last \
-             checkpoint, if there is one"
+             checkpoint, or begins anew where there is none"
         }
         io::ErrorKind::TimedOut => {
             "see what is wrong with the disk; everything written before can be read, and `stickslip resume` goes on \
-             from the last checkpoint, if there is one"
+             from the last checkpoint, or begins anew where there is none"
         }
         _ => "everything written before can be read",
     }
@@ -109,8 +111,8 @@ impl ReadProblem {
     }
 }
 
-/// Writes a file under another name (`.part` appended) and renames it when complete:
-/// a reader sees the old file or the new one.
+/// Writes a file under a name of its own beside it (`NAME.1f3a9c0d.part`) and renames it when complete: a reader sees
+/// the old file or the new one. Nothing that is there already is written to, and no link is followed.
 ///
 /// # Errors
 /// The disk is full or refuses; then the old file is untouched and nothing half-written is left.
@@ -234,8 +236,7 @@ fn put(
     flushed: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<FileSum, OutputError> {
-    replace_by(path, |part| {
-        let file = File::create(part)?;
+    replace_with(path, |_, file| {
         let mut file = BufWriter::with_capacity(1 << 18, SummedFile::new(file));
         write(&mut file)?;
         let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -246,16 +247,17 @@ fn put(
     })
 }
 
-/// The same of a file that `write` makes under that other name.
+/// The same of a file that `write` fills by that other name, under which there is an empty one.
 ///
 /// # Errors
 /// As [`replace`].
-pub(super) fn replace_by<X>(
-    path: &Path,
-    write: impl FnOnce(&Path) -> io::Result<X>,
-) -> Result<X, OutputError> {
-    let part = part_of(path);
-    write(&part).and_then(|made| fs::rename(&part, path).map(|()| made)).map_err(|source| {
+pub fn replace_by<X>(path: &Path, write: impl FnOnce(&Path) -> io::Result<X>) -> Result<X, OutputError> {
+    replace_with(path, |part, _| write(part))
+}
+
+fn replace_with<X>(path: &Path, write: impl FnOnce(&Path, File) -> io::Result<X>) -> Result<X, OutputError> {
+    let (part, file) = new_part(path).map_err(OutputError::at(path))?;
+    write(&part, file).and_then(|made| fs::rename(&part, path).map(|()| made)).map_err(|source| {
         // The first error is the one to report; a part that cannot be removed either is cleared by the next run.
         let _ = fs::remove_file(&part);
         OutputError { path: path.to_path_buf(), source }
@@ -320,11 +322,39 @@ pub(super) fn remove_from(paths: impl Iterator<Item = PathBuf>) -> Result<(), Ou
     Ok(())
 }
 
-/// The name under which [`replace`] writes before it renames.
-pub(super) fn part_of(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".part");
-    PathBuf::from(name)
+/// Names that are tried for a part: that even one is taken has odds of one to billions.
+const TRIALS: u32 = 16;
+/// Digits of a part's number.
+const DIGITS: usize = 8;
+/// The longest name that a part repeats: systems take 255 bytes [bytes].
+const LONGEST_NAME: usize = 200;
+
+/// A new and empty file beside a path, and its name: one that nobody has, and nobody can know before.
+///
+/// # Errors
+/// The disk refuses.
+pub(super) fn new_part(path: &Path) -> io::Result<(PathBuf, File)> {
+    let name = path.file_name().filter(|name| name.len() <= LONGEST_NAME).unwrap_or(OsStr::new("stickslip"));
+    let mut taken = io::ErrorKind::AlreadyExists.into();
+    for trial in 0..TRIALS {
+        let mut name = name.to_owned();
+        // Each state is another one.
+        name.push(format!(".{:08x}.part", RandomState::new().hash_one(trial) as u32));
+        let part = path.with_file_name(name);
+        match File::create_new(&part) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => taken = error,
+            other => return other.map(|file| (part, file)),
+        }
+    }
+    Err(taken)
+}
+
+/// The name that a part gets when it is complete; none of a name that no part has. Earlier versions gave parts no
+/// numbers.
+pub fn whole_name(part: &str) -> Option<&str> {
+    let name = part.strip_suffix(".part")?;
+    let is_number = |end: &str| end.len() == DIGITS && end.bytes().all(|byte| byte.is_ascii_hexdigit());
+    Some(name.rsplit_once('.').filter(|(_, end)| is_number(end)).map_or(name, |(name, _)| name))
 }
 
 #[cfg(test)]
@@ -344,5 +374,37 @@ mod tests {
         assert!(error.to_string().contains("run.json"), "{error}");
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// Under whatever name a part could have, and where the file itself is a link.
+    #[cfg(unix)]
+    #[test]
+    fn neither_files_beside_it_nor_behind_links_are_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, beside, victim] = ["x.png", "x.png.part", "victim"].map(|name| folder.path().join(name));
+        fs::write(&victim, "mine").unwrap();
+        std::os::unix::fs::symlink(&victim, &beside).unwrap();
+        std::os::unix::fs::symlink(&victim, &path).unwrap();
+        replace(&path, |file| file.write_all(b"new")).unwrap();
+        assert!(!path.is_symlink() && beside.is_symlink());
+        assert_eq!(
+            (fs::read(&path).unwrap(), fs::read(&victim).unwrap()),
+            (b"new".to_vec(), b"mine".to_vec())
+        );
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+
+    #[test]
+    fn parts_are_known_by_their_names_and_take_those_of_long_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let (part, _) = new_part(&folder.path().join("00003.vtu")).unwrap();
+        assert_eq!(whole_name(part.file_name().unwrap().to_str().unwrap()), Some("00003.vtu"));
+        assert_eq!(whole_name("00003.vtu.part"), Some("00003.vtu"));
+        assert_eq!(whole_name("a.12345.part"), Some("a.12345"));
+        assert_eq!(whole_name("00003.vtu"), None);
+        // 255 bytes are what systems take.
+        let long = folder.path().join("x".repeat(255));
+        replace(&long, |file| file.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&long).unwrap(), b"new");
     }
 }

@@ -1,7 +1,7 @@
 //! The folder that a run writes to: made, or cleared of the results of an earlier run, and of nothing else.
 
 use super::checkpoint::{Checkpoint, is_checkpoint};
-use super::file::{OutputError, part_of};
+use super::file::{OutputError, new_part, whole_name};
 use super::manifest::{Manifest, Status};
 use super::waiting::Waiting;
 use super::{
@@ -49,6 +49,8 @@ const SNAPSHOTS: [&str; 5] = [PARTICLES, SURFACES, GRID, FRINGES, CHECKPOINTS];
 const PREVIOUS: &str = "previous";
 /// Where those stay that can be gone on with, until the next run has finished.
 const UNFINISHED: &str = "unfinished";
+/// A file that is made to see whether one can be, and removed at once.
+const TRIAL: &str = "stickslip";
 
 /// A folder that is ready to take the results of a run.
 #[derive(Clone, Debug)]
@@ -70,6 +72,15 @@ pub enum FolderError {
         path: PathBuf,
         /// One of the files.
         found: String,
+    },
+    /// A folder or a file of results is a link: what lies behind it is somebody else's.
+    #[error("{} is a link, and a run writes through none", path.display())]
+    #[diagnostic(help(
+        "remove it; results that are to lie elsewhere go there by --out, or by a link in the place of the whole folder"
+    ))]
+    Link {
+        /// The link.
+        path: PathBuf,
     },
     /// Another run writes to it.
     #[error("another run is writing to {}", path.display())]
@@ -93,25 +104,25 @@ impl OutputFolder {
     /// Makes the folder, or puts the results of an earlier run in it aside, into the folder `previous`, until
     /// [`OutputFolder::begun`].
     ///
-    /// A folder counts as one of ours if it is empty or holds a [`Manifest`]. Only files that a run writes are moved:
-    /// notes, plots and pictures beside them stay.
+    /// A folder counts as one of ours if it is empty or holds a [`Manifest`], or what a kill leaves of the first one.
+    /// Only files that a run writes are moved: notes, plots and pictures beside them stay.
     ///
     /// # Errors
-    /// The folder holds files but no manifest, or it cannot be made or written.
+    /// The folder holds files but no manifest, or a link in the place of results, or it cannot be made or written.
     pub fn prepare(path: &Path) -> Result<Self, FolderError> {
         let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
         fs::create_dir_all(path).map_err(unusable)?;
         let held = lock(path)?;
-        let mut entries = fs::read_dir(path).map_err(unusable)?;
-        if let Some(entry) = entries.next().transpose().map_err(unusable)?
+        refuse_links(path)?;
+        if let Some(found) = stranger(path)?
             && Manifest::read(path).is_err()
             && Manifest::read(&path.join(PREVIOUS)).is_err()
         {
-            let found = entry.file_name().to_string_lossy().into_owned();
             return Err(FolderError::Foreign { path: path.to_path_buf(), found });
         }
         // Asked for before anything is moved: a folder that cannot be written keeps its old results.
         try_to_write(path).map_err(unusable)?;
+        clear_parts(path)?;
         put_aside(path)?;
         Ok(OutputFolder { path: path.to_path_buf(), held: Arc::new(held), waiting: Arc::default() })
     }
@@ -149,15 +160,17 @@ impl OutputFolder {
         remove_empty(&unfinished)
     }
 
-    /// The folder of a run that goes on: everything in it stays.
+    /// The folder of a run that goes on: everything in it stays but what is half-written.
     ///
     /// # Errors
-    /// Another run writes to it, or it cannot be read.
+    /// Another run writes to it, it has a link in the place of results, or it cannot be read.
     pub fn reopen(path: &Path) -> Result<Self, FolderError> {
         let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
         fs::read_dir(path).map_err(unusable)?;
         let held = lock(path)?;
+        refuse_links(path)?;
         try_to_write(path).map_err(unusable)?;
+        clear_parts(path)?;
         Ok(OutputFolder { path: path.to_path_buf(), held: Arc::new(held), waiting: Arc::default() })
     }
 
@@ -186,6 +199,14 @@ impl OutputFolder {
         Err(OutputError::at(&self.path)(io::Error::new(io::ErrorKind::NotFound, told)))
     }
 
+    /// The folder where it is now, if it was moved and the system says where to.
+    pub fn moved(&self) -> Option<OutputFolder> {
+        let held = self.held.as_ref().as_ref()?;
+        let path = PathBuf::from(place(held)?.strip_prefix("at ")?);
+        let found = fs::metadata(&path).ok()?;
+        is_one(held, &found).then(|| OutputFolder { path, ..self.clone() })
+    }
+
     /// Bytes of each table in it.
     pub fn tables(&self) -> BTreeMap<String, u64> {
         let tables = FILES.iter().filter(|name| name.ends_with(".csv"));
@@ -205,8 +226,49 @@ impl OutputFolder {
 }
 
 fn try_to_write(path: &Path) -> io::Result<()> {
-    let trial = path.join(".stickslip");
-    fs::write(&trial, []).and_then(|()| fs::remove_file(&trial))
+    let (trial, _) = new_part(&path.join(TRIAL))?;
+    fs::remove_file(trial)
+}
+
+/// Refuses links in the places of results, here and where those of earlier runs are.
+fn refuse_links(path: &Path) -> Result<(), FolderError> {
+    let folders = [path.to_path_buf(), path.join(PREVIOUS), path.join(UNFINISHED)];
+    let inside = folders.iter().flat_map(|folder| {
+        SNAPSHOTS.iter().chain(&FILES).chain(&[PREVIOUS, UNFINISHED]).map(|name| folder.join(name))
+    });
+    match inside.into_iter().find(|place| place.is_symlink()) {
+        Some(path) => Err(FolderError::Link { path }),
+        None => Ok(()),
+    }
+}
+
+/// An entry of a folder that is not what a run leaves which is killed while it writes its first record.
+fn stranger(path: &Path) -> Result<Option<String>, FolderError> {
+    let names = names(path)?.into_iter().map(|name| name.to_string_lossy().into_owned());
+    Ok(names
+        .into_iter()
+        .find(|name| !whole_name(name).is_some_and(|whole| [Manifest::FILE, TRIAL].contains(&whole))))
+}
+
+/// Removes what earlier runs left half-written.
+fn clear_parts(path: &Path) -> Result<(), FolderError> {
+    let is_ours = |whole: &str| whole == TRIAL || FILES.contains(&whole);
+    let folders = SNAPSHOTS.map(|name| path.join(name));
+    let here = names(path)?.into_iter().map(|name| (path, name, &is_ours as &dyn Fn(&str) -> bool));
+    let mut all: Vec<_> = here.collect();
+    for folder in folders.iter().filter(|folder| folder.is_dir()) {
+        all.extend(names(folder)?.into_iter().map(|name| (folder.as_path(), name, &is_snapshot as _)));
+    }
+    let parts =
+        all.iter().filter(|(_, name, is_ours)| name.to_str().and_then(whole_name).is_some_and(is_ours));
+    parts.into_iter().try_for_each(|(folder, name, _)| remove(&folder.join(name)))
+}
+
+/// The names in a folder.
+fn names(path: &Path) -> Result<Vec<OsString>, FolderError> {
+    let names: io::Result<Vec<_>> =
+        fs::read_dir(path).and_then(|entries| entries.map(|entry| Ok(entry?.file_name())).collect());
+    names.map_err(|source| FolderError::Unusable { path: path.to_path_buf(), source })
 }
 
 /// Opens a folder and locks it against other runs, until what is returned is dropped or the process ends, however it
@@ -286,7 +348,6 @@ fn move_results(from: &Path, to: &Path) -> Result<(), FolderError> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             other => other.map_err(unusable)?,
         }
-        remove(&part_of(&from.join(name)))?;
     }
     Ok(())
 }
@@ -304,7 +365,6 @@ fn clear(path: &Path) -> Result<(), FolderError> {
     // The manifest goes last: a run that is stopped here leaves a folder that the next run still knows as ours.
     for name in FILES {
         remove(&path.join(name))?;
-        remove(&part_of(&path.join(name)))?;
     }
     Ok(())
 }
@@ -316,20 +376,17 @@ fn clear_snapshots(path: &Path) -> Result<(), FolderError> {
 
 /// The names of the snapshots in a folder; none where there is no folder.
 fn snapshots(path: &Path) -> Result<Vec<OsString>, FolderError> {
-    let unusable = |source| FolderError::Unusable { path: path.to_path_buf(), source };
-    let entries = match fs::read_dir(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        other => other.map_err(unusable)?,
-    };
-    let names: io::Result<Vec<_>> = entries.map(|entry| Ok(entry?.file_name())).collect();
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
     let ours = |name: &OsString| is_snapshot(&name.to_string_lossy());
-    Ok(names.map_err(unusable)?.into_iter().filter(ours).collect())
+    Ok(names(path)?.into_iter().filter(ours).collect())
 }
 
 /// Removes a folder that holds nothing.
 fn remove_empty(path: &Path) -> Result<(), FolderError> {
     match fs::remove_dir(path) {
-        // A link to a folder elsewhere stays.
+        // What is no folder stays.
         Err(error)
             if matches!(
                 error.kind(),
@@ -344,7 +401,7 @@ fn remove_empty(path: &Path) -> Result<(), FolderError> {
 
 /// `00012.vtu`, `00012.vtp`, `00012.glb`, `00012.png`, a checkpoint, or the same not yet renamed.
 fn is_snapshot(name: &str) -> bool {
-    let name = name.strip_suffix(".part").or_else(|| name.strip_suffix(".damaged")).unwrap_or(name);
+    let name = whole_name(name).or_else(|| name.strip_suffix(".damaged")).unwrap_or(name);
     let numbered = (["vtu", "vtp", "glb", "png"].iter())
         .find_map(|kind| name.strip_suffix(kind)?.strip_suffix('.'))
         .is_some_and(|number| number.len() >= 5 && number.bytes().all(|b| b.is_ascii_digit()));
@@ -431,20 +488,45 @@ mod tests {
         assert!(all_in(&kept));
     }
 
+    /// Of a folder of snapshots, of a table, and where earlier results are: nothing behind them is touched.
     #[cfg(unix)]
     #[test]
-    fn results_behind_a_link_are_put_aside() {
-        let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        let out = folder.path();
-        std::os::unix::fs::symlink(elsewhere.path(), out.join("particles")).unwrap();
-        fs::write(elsewhere.path().join("00000.vtu"), "the first").unwrap();
+    fn a_folder_with_links_in_the_place_of_results_is_refused() {
         let scene = crate::scene::Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
-        let folder = OutputFolder { path: out.to_path_buf(), held: Arc::default(), waiting: Arc::default() };
-        Manifest::new(&scene, Default::default()).write(&folder).unwrap();
-        for _ in 0..2 {
-            drop(OutputFolder::prepare(out).unwrap());
-            assert_eq!(fs::read_to_string(out.join("previous/particles/00000.vtu")).unwrap(), "the first");
+        for name in
+            ["particles", "checkpoints", "energy.csv", "run.json", "previous", "previous/grid", "unfinished"]
+        {
+            let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+            let out = folder.path();
+            let held =
+                OutputFolder { path: out.to_path_buf(), held: Arc::default(), waiting: Arc::default() };
+            Manifest::new(&scene, Default::default()).write(&held).unwrap();
+            fs::write(elsewhere.path().join("00000.vtu"), "mine").unwrap();
+            let link = out.join(name);
+            fs::create_dir_all(link.parent().unwrap()).unwrap();
+            let _ = fs::remove_file(&link);
+            std::os::unix::fs::symlink(elsewhere.path(), &link).unwrap();
+            for refused in [OutputFolder::prepare(out), OutputFolder::reopen(out)] {
+                assert!(matches!(refused, Err(FolderError::Link { path }) if path == link), "{name}");
+            }
+            assert_eq!(fs::read_to_string(elsewhere.path().join("00000.vtu")).unwrap(), "mine");
+            assert!(link.is_symlink());
         }
+    }
+
+    /// By the present names of parts, and by those of earlier versions.
+    #[test]
+    fn what_a_kill_leaves_of_the_first_record_is_no_stranger() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["run.json.part", "run.json.0123abcd.part", "stickslip.0123abcd.part"] {
+            fs::write(folder.path().join(name), "{").unwrap();
+        }
+        drop(OutputFolder::prepare(folder.path()).unwrap());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        fs::write(folder.path().join("run.json.0123abcd.part"), "{").unwrap();
+        fs::write(folder.path().join("notes.json.0123abcd.part"), "mine").unwrap();
+        assert!(matches!(OutputFolder::prepare(folder.path()), Err(FolderError::Foreign { .. })));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]
@@ -481,6 +563,7 @@ mod tests {
     #[test]
     fn snapshots_are_known_by_name() {
         assert!(is_snapshot("00000.vtu") && is_snapshot("123456.vtu") && is_snapshot("00003.vtu.part"));
+        assert!(is_snapshot("00003.vtu.0123abcd.part") && !is_snapshot("mine.0123abcd.part"));
         assert!(is_snapshot("00004.png") && is_snapshot("0000000012.checkpoint.part"));
         assert!(!is_snapshot("mine.vtu") && !is_snapshot("1.vtu") && !is_snapshot("00000.stl"));
         assert!(is_snapshot("00001.vtp") && is_snapshot("00002.glb") && !is_snapshot("00002vtp"));

@@ -1,6 +1,6 @@
 //! `run.json`: what was run, by which program, how it went and how long it took.
 
-use super::file::{OutputError, ReadError, ReadProblem, read_bytes, replace_for_good};
+use super::file::{OutputError, ReadError, ReadProblem, open_file, read_bytes, replace_for_good};
 use super::folder::OutputFolder;
 use super::work::work;
 use crate::check::Warning;
@@ -12,6 +12,8 @@ use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::fmt::{self, Formatter};
+use std::fs::File;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -282,7 +284,7 @@ impl SceneSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It has not ended; or it was killed, or its disk was too full to say how it ended.
+    /// It has not ended; or it was killed, or its disk would not take how it ended.
     Running,
     /// It reached its end time.
     Finished,
@@ -411,8 +413,38 @@ impl Manifest {
         replace_for_good(&folder.join(Self::FILE), |file| {
             let text = work(|| serde_json::to_string_pretty(self))?;
             let text = text.strip_suffix("\n}").expect("a record has entries, each on a line of its own");
-            writeln!(file, "{text}{SUM}{}\n}}", crc32fast::hash(text.as_bytes()))
+            file.write_all(&with_sum(text.as_bytes()))
         })
+    }
+
+    /// Says in the record of a run under way that it failed: where it lies, with as many bytes as it has, which a disk
+    /// takes that has no room for another record.
+    ///
+    /// # Errors
+    /// It cannot be written, or is not that of a run under way.
+    pub fn mark_as_failed(folder: &OutputFolder) -> Result<(), OutputError> {
+        const FAILED: &[u8] = b"\"failed\", ";
+        const RUNNING: &[u8] = b"\"running\",";
+        let path = folder.join(Self::FILE);
+        let mark = || -> io::Result<()> {
+            let mut bytes = read_bytes(&path)?;
+            let is_known = || io::Error::from(io::ErrorKind::InvalidData);
+            let status = bytes.windows(RUNNING.len()).position(|found| found == RUNNING);
+            let status =
+                status.filter(|at| bytes[..*at].ends_with(b"\n  \"status\": ")).ok_or_else(is_known)?;
+            bytes[status..status + FAILED.len()].copy_from_slice(FAILED);
+            let sum = find_sum(&bytes).ok_or_else(is_known)?;
+            let marked = with_sum(&bytes[..sum]);
+            if marked.len() != bytes.len() {
+                return Err(is_known());
+            }
+            // What is no file is refused.
+            drop(open_file(&path)?);
+            let mut file = File::options().write(true).open(&path)?;
+            file.write_all(&marked)?;
+            file.sync_all()
+        };
+        mark().map_err(OutputError::at(&path))
     }
 
     /// Holds the record in a folder against its own sum; those of earlier versions have none.
@@ -422,11 +454,10 @@ impl Manifest {
     pub(super) fn verify(folder: &Path) -> Result<(), ReadError> {
         let path = folder.join(Self::FILE);
         let bytes = read_bytes(&path).map_err(|error| ReadProblem::Io(error).at(&path))?;
-        let Some(end) = bytes.windows(SUM.len()).rposition(|found| found == SUM.as_bytes()) else {
-            return Ok(());
-        };
-        let same =
-            bytes[end + SUM.len()..] == *format!("{}\n}}\n", crc32fast::hash(&bytes[..end])).as_bytes();
+        let Some(end) = find_sum(&bytes) else { return Ok(()) };
+        // Those of earlier versions have no blanks before it.
+        let expected = with_sum(&bytes[..end]);
+        let same = bytes == expected || bytes[end..] == *sum_of(&bytes[..end], 0).as_bytes();
         let changed = || ReadProblem::Layout("bytes of it have changed since the run wrote it".to_string());
         if same { Ok(()) } else { Err(changed().at(&path)) }
     }
@@ -468,6 +499,22 @@ impl Manifest {
         }
         Ok(manifest)
     }
+}
+
+/// The text of a record with its sum behind it, which always has the same length.
+fn with_sum(text: &[u8]) -> Vec<u8> {
+    /// Of the largest number of 32 bits.
+    const DIGITS: usize = 10;
+    [text, sum_of(text, DIGITS).as_bytes()].concat()
+}
+
+fn sum_of(text: &[u8], digits: usize) -> String {
+    format!("{SUM}{:>digits$}\n}}\n", crc32fast::hash(text))
+}
+
+/// Where the sum of a record begins.
+fn find_sum(bytes: &[u8]) -> Option<usize> {
+    bytes.windows(SUM.len()).rposition(|found| found == SUM.as_bytes())
 }
 
 /// Puts U+FFFD in the place of each control character in a text of a record; new lines and tabs stay.
@@ -515,5 +562,29 @@ mod tests {
             assert!(!is_read(wrong), "{wrong}");
         }
         assert!(!is_read(r#"{"a": [{"$serde_json::private::RawValue": "x"}]}"#));
+    }
+
+    /// On a disk that takes no other file: the same length, and a sum that holds.
+    #[test]
+    fn a_record_is_marked_where_it_lies() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputFolder::prepare(folder.path()).unwrap();
+        let mut scene = Scene::new(crate::scene::Dimension::Space, 1.0, 1.0);
+        scene.title = "\"status\": \"running\",".to_string();
+        let manifest = Manifest::new(&scene, Performance::default());
+        manifest.write(&out).unwrap();
+        let bytes = std::fs::read(out.join(Manifest::FILE)).unwrap();
+        Manifest::mark_as_failed(&out).unwrap();
+        let found = Manifest::read(folder.path()).unwrap();
+        assert_eq!((found.status, &found.title), (Status::Failed, &scene.title));
+        assert_eq!(std::fs::read(out.join(Manifest::FILE)).unwrap().len(), bytes.len());
+        Manifest::verify(folder.path()).unwrap();
+        // One that has ended says how already.
+        assert!(Manifest::mark_as_failed(&out).is_err());
+        // A sum without blanks, as earlier versions wrote it.
+        let end = find_sum(&bytes).unwrap();
+        let old = [&bytes[..end], sum_of(&bytes[..end], 0).as_bytes()].concat();
+        std::fs::write(out.join(Manifest::FILE), old).unwrap();
+        Manifest::verify(folder.path()).unwrap();
     }
 }

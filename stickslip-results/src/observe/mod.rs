@@ -55,7 +55,7 @@ pub use checkpoint::{Checkpoint, CheckpointForm};
 pub use contacts::ContactRow;
 pub use energy::EnergyRow;
 pub use fabric::FabricRow;
-pub use file::{OutputError, ReadError, ReadProblem, replace};
+pub use file::{OutputError, ReadError, ReadProblem, replace, replace_by, whole_name};
 pub use folder::{FolderError, OutputFolder};
 pub use frames::Frame;
 pub use fringes::{FRAMES_PER_SECOND, FringeRow};

@@ -196,13 +196,14 @@ impl Sheet {
     /// The file of a table, with its header if it is new.
     fn open(path: &Path, header: &str) -> Result<Self, OutputError> {
         let at = OutputError::at;
-        let file = File::options()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path)
-            .map_err(at(path))?;
+        // One that is new is nobody's; one that is there is no link, as the folder was searched for these.
+        let mut options = File::options();
+        let file =
+            options.read(true).write(true).create_new(true).open(path).or_else(|error| match error.kind() {
+                io::ErrorKind::AlreadyExists => File::options().read(true).write(true).open(path),
+                _ => Err(error),
+            });
+        let file = file.map_err(at(path))?;
         let about = file.metadata().map_err(at(path))?;
         let there = about.len();
         let mut sheet = Sheet { path: path.to_path_buf(), file: SummedFile::new(file) };

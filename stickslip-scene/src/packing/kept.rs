@@ -8,8 +8,9 @@ use super::{NoPacking, Packing, Placement};
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write as _};
 use std::fs;
+use std::hash::{BuildHasher, RandomState};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Beside the version of the crate: another number where the same packing comes out with other places.
@@ -121,11 +122,12 @@ fn decoded(bytes: &[u8]) -> Option<Vec<Placement>> {
 fn keep(path: &Path, placed: &[Placement]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder)?;
-    // A name that no other process, and no other thread of this one, writes to.
-    static WRITES: AtomicU64 = AtomicU64::new(0);
-    let write = WRITES.fetch_add(1, Ordering::Relaxed);
-    let part = path.with_extension(format!("{}-{write}.part", std::process::id()));
-    let written = fs::write(&part, encoded(placed)).and_then(|()| fs::rename(&part, path));
+    // A name that nobody else has: each state is another one.
+    let number = RandomState::new().hash_one(0) as u32;
+    let part = path.with_extension(format!("{number:08x}.part"));
+    // A file or a link of this name is somebody else's, or was left by a process that was killed.
+    let mut file = fs::File::create_new(&part)?;
+    let written = file.write_all(&encoded(placed)).and_then(|()| fs::rename(&part, path));
     if written.is_err() {
         let _ = fs::remove_file(&part);
     }

@@ -37,8 +37,8 @@ pub enum ResumeError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Unread(#[from] ReadError),
-    /// The run ended before it made one.
-    #[error("there is nothing to go on from in {}: the run ended before its first checkpoint", path.display())]
+    /// The run has finished, and made none.
+    #[error("there is nothing to go on from in {}: the run finished without a checkpoint", path.display())]
     #[diagnostic(help("run the scene anew"))]
     None {
         /// Where checkpoints would be.

@@ -24,7 +24,7 @@ use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
     BegunFrom, Checkpoint, CheckpointForm, Doubt, Manifest, Memory, Observer, OutputError, OutputFolder,
-    Patience, Performance, Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
+    Patience, Performance, ReadError, Recorder, SceneSource, Status, Waiting, Writer, present_state_sum,
 };
 use crate::scene::{HealthCheck, Scene};
 use checkpoints::Checkpoints;
@@ -147,13 +147,12 @@ pub fn resume(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    let folder = options.patient(OutputFolder::reopen(&options.out)?);
     // A power cut may have taken the record; the checkpoint holds the scene, too.
     let before = Manifest::read(&options.out);
     if Checkpoint::list(&options.out).map_err(ResumeError::from)?.is_empty() {
-        before.map_err(ResumeError::from)?;
-        return Err(ResumeError::None { path: options.out.clone() }.into());
+        return begin_anew(scene, simulation, (options, before), progress);
     }
+    let folder = options.patient(OutputFolder::reopen(&options.out)?);
     let (mut checkpoint, path, damaged) = Checkpoint::newest(&options.out).map_err(ResumeError::from)?;
     same_physics(&path, &checkpoint.scene(), &Manifest::record(scene))?;
     let time = checkpoint.state.time;
@@ -197,6 +196,24 @@ pub fn resume(
         remembered: None,
     };
     drive(scene, simulation, (options, folder), (&mut [], beginning), progress)
+}
+
+/// Begins a run anew that ended before its first checkpoint, by a fault of the disk or a kill.
+fn begin_anew(
+    scene: &Scene,
+    simulation: &mut dyn Simulation,
+    (options, before): (&RunOptions, Result<Manifest, ReadError>),
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
+    let before = before.map_err(ResumeError::from)?;
+    if before.status == Status::Finished {
+        return Err(ResumeError::None { path: options.out.clone() }.into());
+    }
+    same_physics(&options.out, &before.scene.value(), &Manifest::record(scene))?;
+    let news = format!("{} has no checkpoint: the run begins anew", options.out.display());
+    let clock = RunClock::start(simulation, options.threads);
+    progress(&Progress { news: vec![news], ..clock.progress(simulation, scene.time.end) });
+    run(scene, simulation, options, progress)
 }
 
 /// From where a run begins.
@@ -297,13 +314,18 @@ fn drive(
     manifest.state_sum = outcome.as_ref().ok().and_then(|(_, sum)| sum.clone());
     manifest.relaxation = simulation.relaxation();
     [manifest.warnings, manifest.remarks] = kept.verdict.found(scene);
+    manifest.looks = kept.verdict.looks();
     // Whatever went wrong with files: if the folder is not where it was, that is why.
     let in_place = folder.is_in_place();
     let outcome = match (outcome, in_place) {
-        (Err(RunError::Output(_)) | Ok(_), Err(moved)) => return Err(moved.into()),
+        (Err(RunError::Output(_)) | Ok(_), Err(moved)) => {
+            (manifest.status, manifest.error) = (Status::Failed, Some(moved.to_string()));
+            // Its record says so where it is now, if that can be known.
+            let _ = folder.moved().map(|folder| record(&manifest, &folder));
+            return Err(moved.into());
+        }
         (outcome, _) => outcome,
     };
-    manifest.looks = kept.verdict.looks();
     let stopped = kept
         .verdict
         .stop()
@@ -312,6 +334,10 @@ fn drive(
     manifest.error = ended.as_ref().err().map(RunError::to_string);
     manifest.tables = folder.tables();
     let saved = record(&manifest, &folder);
+    if saved.is_err() {
+        // The one that is there says no more than that, if the disk takes even this.
+        let _ = Manifest::mark_as_failed(&folder);
+    }
     ended?;
     saved?;
     if manifest.status == Status::Finished {

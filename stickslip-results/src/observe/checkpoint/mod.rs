@@ -19,6 +19,7 @@ pub(super) use sections::{MOST_PARTICLES, Section};
 use super::CHECKPOINTS;
 use super::file::{
     OutputError, ReadError, ReadProblem, open_file, read_bytes, replace_by, replace_for_good, secure_name,
+    whole_name,
 };
 use super::folder::OutputFolder;
 use super::manifest::SceneRecord;
@@ -350,7 +351,7 @@ impl Checkpoint {
             if entry
                 .file_name()
                 .to_str()
-                .and_then(|name| name.strip_suffix(".part"))
+                .and_then(whole_name)
                 .is_some_and(|name| is_checkpoint(name) || of_checkpoint(name).is_some())
             {
                 fs::remove_file(entry.path()).map_err(OutputError::at(&entry.path()))?;
