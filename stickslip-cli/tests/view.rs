@@ -150,6 +150,57 @@ fn other_machines_and_other_pages_are_refused() {
     );
 }
 
+/// Announced bodies, heads that come slowly or never end, and connections that say nothing: others are answered
+/// meanwhile, and Ctrl-C ends the server.
+#[test]
+fn nobody_keeps_the_viewer_from_answering() {
+    let workplace = results();
+    let mut server = Server::start(&workplace, &["scene.results"]);
+    let head = |more: &str| format!("GET / HTTP/1.1\r\nHost: {}\r\n{more}", server.host());
+    let open = |bytes: &str| {
+        let mut stream = TcpStream::connect(server.host()).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        stream.write_all(bytes.as_bytes()).unwrap();
+        stream
+    };
+    let answered = |mut stream: TcpStream| {
+        let mut bytes = Vec::new();
+        // What was sent beyond a head may reset the connection behind the answer.
+        let _ = stream.read_to_end(&mut bytes);
+        String::from_utf8_lossy(&bytes).split(' ').nth(1).unwrap_or_default().to_owned()
+    };
+    let is_prompt = || {
+        let begun = Instant::now();
+        assert_eq!(server.get("/pulse").code, 200);
+        assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+    };
+    for length in ["1000000", "99999999999999", "18446744073709551615", "-1", "x"] {
+        assert_eq!(answered(open(&head(&format!("Content-Length: {length}\r\n\r\n")))), "200", "{length}");
+        let post = format!("POST / HTTP/1.1\r\nContent-Length: {length}\r\n\r\n");
+        assert_eq!(answered(open(&post)), "405", "{length}");
+    }
+    // More than a browser opens, of each kind; a server of six threads would wait for any of them.
+    let waiting: Vec<TcpStream> = (0..8)
+        .flat_map(|_| ["", "GET / HT", &head(""), &head("Content-Length: 1000000\r\n\r\n")].map(open))
+        .collect();
+    is_prompt();
+    assert_eq!(answered(open(&head(&"x".repeat(1 << 20)))), "431");
+    assert_eq!(answered(open(&head(&format!("{}\r\n", "a: b\r\n".repeat(1000))))), "431");
+    assert_eq!(answered(open("\0\r\n\r\n")), "400");
+    is_prompt();
+    // Five seconds are what a head gets.
+    let codes: Vec<String> = waiting.into_iter().map(answered).collect();
+    let count = |code: &str| codes.iter().filter(|found| *found == code).count();
+    assert_eq!((count("408"), count("200")), (24, 8), "{codes:?}");
+
+    let _silent: Vec<TcpStream> = (0..100).map(|_| open("")).collect();
+    let begun = Instant::now();
+    let pid = server._process.0.id().to_string();
+    assert!(Command::new("kill").args(["-s", "INT", &pid]).status().unwrap().success());
+    assert_eq!(server._process.0.wait().unwrap().code(), Some(0));
+    assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
+}
+
 #[test]
 fn a_run_that_goes_on_is_followed() {
     let workplace = results();

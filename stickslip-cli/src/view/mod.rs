@@ -12,6 +12,7 @@ mod page;
 mod places;
 mod quantity;
 mod quarters;
+mod request;
 mod route;
 mod server;
 mod single_file;

@@ -3,25 +3,38 @@
 //! Three things keep others out. The port is open to this machine alone. A request must name this machine as its host,
 //! which one that came through a foreign name (DNS rebinding) does not. And a request that a page of another origin
 //! made is refused. Addresses are [`Route`]s, never paths of the disk.
+//!
+//! Nobody can keep others waiting: connections have a thread each, as many as [`CONNECTIONS`], in which the head of a
+//! request and the time for it are limited before anything is read; one answer ends a connection.
 
 use super::library::{Content, Library, Refusal};
 use super::page::POLICY;
+use super::request::Request;
 use super::route::Route;
-use std::io::{self, Write};
-use std::net::{Ipv4Addr, SocketAddr};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-use tiny_http::{Method, Request, Server, StatusCode};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
+use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-/// Requests that are answered side by side: a browser keeps six connections at most.
+/// Connections at a time; those beyond are ended at once. A browser keeps six.
+const CONNECTIONS: usize = 64;
+/// Answers that are made side by side.
 const WORKERS: usize = 6;
-/// Wait before a worker looks whether it is to stop.
+/// Wait before anybody looks whether it is to stop.
 const LOOK: Duration = Duration::from_millis(100);
+/// Wait before new connections are looked for.
+const PAUSE: Duration = Duration::from_millis(2);
+/// Time in which the head of a request must have come.
+const FOR_HEAD: Duration = Duration::from_secs(5);
+/// Time in which an answer must have been taken.
+const FOR_ANSWER: Duration = Duration::from_secs(120);
+/// Time in which the other side is to end the connection after its answer.
+const FOR_END: Duration = Duration::from_millis(500);
 
 /// A page that is being served.
 pub struct Serving {
-    server: Arc<Server>,
+    listener: TcpListener,
     port: u16,
 }
 
@@ -38,9 +51,20 @@ struct Sender<'a> {
 /// # Errors
 /// The port is taken, or may not be opened.
 pub fn serve(port: u16) -> io::Result<Serving> {
-    let server = Server::http(SocketAddr::from((Ipv4Addr::LOCALHOST, port))).map_err(io::Error::other)?;
-    let port = server.server_addr().to_ip().map_or(port, |address| address.port());
-    Ok(Serving { server: Arc::new(server), port })
+    let listener = TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, port)))?;
+    listener.set_nonblocking(true)?;
+    let port = listener.local_addr()?.port();
+    Ok(Serving { listener, port })
+}
+
+/// What connections share.
+struct Shared<'a> {
+    library: &'a Library,
+    stop: &'a AtomicBool,
+    connections: AtomicUsize,
+    /// Answers that are being made.
+    answers: Mutex<usize>,
+    made: Condvar,
 }
 
 impl Serving {
@@ -51,35 +75,125 @@ impl Serving {
 
     /// Answers until `stop` is set.
     pub fn answer(&self, library: &Library, stop: &AtomicBool) {
+        let (connections, answers, made) = Default::default();
+        let shared = &Shared { library, stop, connections, answers, made };
         std::thread::scope(|scope| {
-            for _ in 0..WORKERS {
-                scope.spawn(|| {
-                    while !stop.load(Ordering::Relaxed) {
-                        if let Ok(Some(request)) = self.server.recv_timeout(LOOK) {
-                            self.respond(library, request);
-                        }
-                    }
-                });
+            while !stop.load(Ordering::Relaxed) {
+                // What cannot be taken is asked for again, as where the system has no more files to give.
+                let Ok((stream, _)) = self.listener.accept() else {
+                    std::thread::sleep(PAUSE);
+                    continue;
+                };
+                if shared.connections.fetch_add(1, Ordering::Relaxed) >= CONNECTIONS {
+                    shared.connections.fetch_sub(1, Ordering::Relaxed);
+                    continue;
+                }
+                let respond = move || {
+                    // A browser that has gone away wants no answer.
+                    let _ = self.respond(shared, stream);
+                    shared.connections.fetch_sub(1, Ordering::Relaxed);
+                };
+                if std::thread::Builder::new().spawn_scoped(scope, respond).is_err() {
+                    shared.connections.fetch_sub(1, Ordering::Relaxed);
+                }
             }
         });
     }
 
-    fn respond(&self, library: &Library, request: Request) {
-        let (code, content) = self.reply(library, &request);
-        let bare = *request.method() == Method::Head;
-        // A browser that has gone away wants no answer.
-        let _ = send(code, &content, bare, &mut *request.into_writer());
+    fn respond(&self, shared: &Shared, stream: TcpStream) -> io::Result<()> {
+        // Some systems hand the listener's way of waiting on.
+        stream.set_nonblocking(false)?;
+        let mut wire = Wire { stream, stop: shared.stop, until: Instant::now() + FOR_HEAD };
+        let request = Request::read(&mut wire);
+        let is_bare = request.as_ref().is_ok_and(|request| request.method == "HEAD");
+        let part = if is_bare { Part::Head } else { Part::Whole };
+        let (code, content) = match &request {
+            Ok(request) => self.reply(shared, request),
+            Err(no_request) => match no_request.code {
+                Some(code) => told(code, no_request.reason),
+                None => return Ok(()),
+            },
+        };
+        wire.until = Instant::now() + FOR_ANSWER;
+        send(code, &content, part, &mut wire)?;
+        wire.end()
     }
 
-    fn reply(&self, library: &Library, request: &Request) -> (u16, Content) {
-        if !matches!(request.method(), Method::Get | Method::Head) {
+    fn reply(&self, shared: &Shared, request: &Request) -> (u16, Content) {
+        if !matches!(request.method.as_str(), "GET" | "HEAD") {
             return told(405, "only GET is answered");
         }
-        answer(library, self.port, request.url(), &|name| {
-            let mut found = request.headers().iter();
-            let found = found.find(|header| header.field.as_str().as_str().eq_ignore_ascii_case(name));
-            found.map(|header| header.value.as_str())
-        })
+        shared.in_turn(|| answer(shared.library, self.port, &request.address, &|name| request.header(name)))
+    }
+}
+
+impl Shared<'_> {
+    /// Makes an answer once there are not too many others.
+    fn in_turn<X>(&self, make: impl FnOnce() -> X) -> X {
+        let answers = self.answers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut answers = self
+            .made
+            .wait_while(answers, |answers| *answers >= WORKERS)
+            .unwrap_or_else(PoisonError::into_inner);
+        *answers += 1;
+        drop(answers);
+        let result = make();
+        *self.answers.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        self.made.notify_one();
+        result
+    }
+}
+
+/// A connection that waits no longer than until then, or than the server lives.
+struct Wire<'a> {
+    stream: TcpStream,
+    stop: &'a AtomicBool,
+    until: Instant,
+}
+
+impl Wire<'_> {
+    /// Tries again what may wait, for a while each time.
+    fn patiently<X>(&mut self, mut act: impl FnMut(&mut TcpStream) -> io::Result<X>) -> io::Result<X> {
+        self.stream.set_read_timeout(Some(LOOK))?;
+        self.stream.set_write_timeout(Some(LOOK))?;
+        loop {
+            match act(&mut self.stream) {
+                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
+                    if self.stop.load(Ordering::Relaxed) || Instant::now() >= self.until {
+                        return Err(ErrorKind::TimedOut.into());
+                    }
+                }
+                // One that sends a letter at a time has no more time than others.
+                Ok(_) if Instant::now() >= self.until => return Err(ErrorKind::TimedOut.into()),
+                other => return other,
+            }
+        }
+    }
+
+    /// Ends the connection after an answer. What the other side has sent beyond its request is read for a moment: the
+    /// system would take back the answer otherwise.
+    fn end(mut self) -> io::Result<()> {
+        self.stream.shutdown(Shutdown::Write)?;
+        self.until = Instant::now() + FOR_END;
+        let mut piece = [0; 4096];
+        while self.read(&mut piece)? > 0 {}
+        Ok(())
+    }
+}
+
+impl Read for Wire<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        self.patiently(|stream| stream.read(to))
+    }
+}
+
+impl Write for Wire<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.patiently(|stream| stream.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 
@@ -103,13 +217,32 @@ pub fn answer<'a>(
     }
 }
 
-/// Writes an answer, without its content if it is to be `bare`, after which the connection ends.
-///
-/// tiny_http has a thread for each connection that stays open, and one that comes when two do at once may wait until
-/// another ends. Browsers keep theirs for minutes, and its own `Response` cannot tell them to close.
-fn send(code: u16, content: &Content, bare: bool, writer: &mut dyn Write) -> io::Result<()> {
+/// What of an answer is sent.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Head,
+    Whole,
+}
+
+/// What a status means.
+fn phrase(code: u16) -> &'static str {
+    match code {
+        200 => "OK",
+        400 => "Bad Request",
+        403 => "Forbidden",
+        404 => "Not Found",
+        405 => "Method Not Allowed",
+        408 => "Request Timeout",
+        431 => "Request Header Fields Too Large",
+        _ => "Internal Server Error",
+    }
+}
+
+/// Writes an answer, after which the connection ends.
+fn send(code: u16, content: &Content, part: Part, to: &mut dyn Write) -> io::Result<()> {
     let length = content.bytes.len();
-    write!(writer, "HTTP/1.1 {code} {}\r\n", StatusCode(code).default_reason_phrase())?;
+    let mut writer = BufWriter::new(to);
+    write!(writer, "HTTP/1.1 {code} {}\r\n", phrase(code))?;
     for (name, value) in [
         ("Content-Type", content.kind),
         ("Content-Security-Policy", POLICY),
@@ -122,7 +255,7 @@ fn send(code: u16, content: &Content, bare: bool, writer: &mut dyn Write) -> io:
         write!(writer, "{name}: {value}\r\n")?;
     }
     write!(writer, "Content-Length: {length}\r\n\r\n")?;
-    if !bare {
+    if part == Part::Whole {
         writer.write_all(&content.bytes)?;
     }
     writer.flush()
