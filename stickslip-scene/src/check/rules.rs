@@ -60,10 +60,10 @@ pub(super) fn rule_reports(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
     } else {
         pairs_within(boxes, scene.discretization.cell).into_iter().chain(named_pairs(scene)).collect()
     };
-    let joined = scene.joined_pairs();
+    let (joined, names) = (scene.joined_pairs(), RuleNames::new(scene));
     let mut reports: BTreeMap<usize, RuleReport> = BTreeMap::new();
     for [a, b] in pairs.into_iter().filter(|&pair| scene.may_touch(pair, &joined)) {
-        let rule = scene.contact_rule_between(a, b);
+        let rule = names.rule(names.class(a), names.class(b));
         let report = reports.entry(rule.unwrap_or(usize::MAX)).or_insert_with(|| {
             let ContactRule { law, friction, kinetic_friction, friction_given, .. } =
                 rule.map_or_else(ContactRule::default, |rule| scene.contact[rule].clone());

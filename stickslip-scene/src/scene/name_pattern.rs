@@ -34,6 +34,8 @@ impl<'a> NamePattern<'a> {
 pub struct RuleNames {
     /// Bodies that no rule tells from each other: the numbers of the names that mean them, ascending.
     classes: Vec<Vec<usize>>,
+    /// Of each name, the classes that it means, ascending.
+    meant: Vec<Vec<usize>>,
     /// Of each body, its class.
     class: Vec<usize>,
     /// The two names of each rule.
@@ -76,13 +78,18 @@ impl RuleNames {
         let class = class.collect();
         let mut classes = vec![Vec::new(); places.len()];
         places.into_iter().for_each(|(names, place)| classes[place] = names);
-        RuleNames { classes, class, sides, first }
+        let mut meant = vec![Vec::new(); numbers.len() + 1];
+        for (class, names) in classes.iter().enumerate() {
+            names.iter().for_each(|&name| meant[name].push(class));
+        }
+        RuleNames { classes, meant, class, sides, first }
     }
 
     /// Of bodies between all of which the first rule holds.
     pub fn alike(bodies: usize) -> Self {
         let first = HashMap::from([([ANY; 2], 0)]);
-        RuleNames { classes: vec![vec![ANY]], class: vec![0; bodies], sides: vec![[ANY; 2]], first }
+        let (classes, meant) = (vec![vec![ANY]], vec![vec![0]]);
+        RuleNames { classes, meant, class: vec![0; bodies], sides: vec![[ANY; 2]], first }
     }
 
     /// Number of classes of bodies that no rule tells from each other.
@@ -97,8 +104,7 @@ impl RuleNames {
 
     /// The classes that the first and the second name of a rule mean.
     pub fn sides(&self, rule: usize) -> [impl Iterator<Item = usize> + Clone; 2] {
-        self.sides[rule]
-            .map(|name| (0..self.classes.len()).filter(move |&class| self.classes[class].contains(&name)))
+        self.sides[rule].map(|name| self.meant[name].iter().copied())
     }
 
     /// The first rule between bodies of two classes; `None` where no rule matches.

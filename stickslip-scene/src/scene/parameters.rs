@@ -8,13 +8,16 @@ use super::letters::is_no_letter;
 use super::source::{DocumentNode, Source, Value};
 use super::suggestion::did_you_mean;
 use super::units::Powers;
-use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::cell::{Cell, OnceCell, RefCell};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The parameters of a scene, evaluated when they are first asked for.
 pub(super) struct Parameters<'s> {
     source: &'s Source,
     nodes: &'s [DocumentNode],
+    by_name: HashMap<&'s str, &'s DocumentNode>,
+    /// What texts of the scene have in braces, once somebody asks.
+    in_braces: OnceCell<HashSet<&'s str>>,
     evaluated: RefCell<BTreeMap<&'s str, Result<FormulaNumber, Fault>>>,
     /// Parameters that are being evaluated, to notice circles.
     pending: RefCell<Vec<&'s str>>,
@@ -61,6 +64,8 @@ impl<'s> Parameters<'s> {
         Ok(Parameters {
             source,
             nodes,
+            by_name: nodes.iter().map(|node| (node.name.as_str(), node)).collect(),
+            in_braces: OnceCell::new(),
             evaluated: RefCell::default(),
             pending: RefCell::default(),
             put: Cell::new(0),
@@ -80,7 +85,9 @@ impl<'s> Parameters<'s> {
     ) -> Result<(), Fault> {
         check_name(node)?;
         let name = node.name.as_str();
-        if self.names().iter().any(|other| other == name) {
+        let is_taken =
+            self.by_name.contains_key(name) || self.indices.borrow().iter().any(|(other, _)| other == name);
+        if is_taken {
             let found = format!("the index `{name}`, which is the name of a parameter or of another index");
             return Err(Fault::new(&node.key, found, "another name").at(node.name_span.clone()));
         }
@@ -116,7 +123,7 @@ impl<'s> Parameters<'s> {
         for node in self.nodes {
             let value = match self.quantity(&node.name) {
                 Some(Ok(quantity)) => Parameter::Number(quantity.value),
-                Some(Err(fault)) if !(is_word(node) || is_used_as_text(&node.name, self.source.root())) => {
+                Some(Err(fault)) if !(is_word(node) || self.is_used_as_text(&node.name)) => {
                     return Err(fault);
                 }
                 _ => Parameter::Text(self.text(node)?),
@@ -208,7 +215,7 @@ impl<'s> Parameters<'s> {
 
     /// What a formula in braces gives, `{i + 1}`: a number without a unit; `shift` is where it begins in the text.
     fn number_as_text(&self, node: &DocumentNode, text: &str, shift: usize) -> Result<String, Fault> {
-        let place = self.source.inside(node, shift..shift + text.len());
+        let place = || self.source.inside(node, shift..shift + text.len());
         if is_plain(text) && self.index(text).is_none() {
             let allowed = format!("a parameter ({})", self.names().join(", "));
             return Err(Fault::new(&node.key, format!("unknown parameter `{text}`"), allowed)
@@ -219,25 +226,25 @@ impl<'s> Parameters<'s> {
             formula::compile(text, &Scope(self, Dependence::Constant)).map_err(|error| match error {
                 FormulaError::Parameter(fault) => fault,
                 FormulaError::Here(misread) => {
-                    Fault::new(&node.key, misread.found, misread.allowed).help(misread.help).at(place.clone())
+                    Fault::new(&node.key, misread.found, misread.allowed).help(misread.help).at(place())
                 }
             })?;
         let value = formula.expression.at(0.0);
         if formula.kind.fits(Powers::NONE) && value.is_finite() {
             return Ok(value.to_string());
         }
-        Err(Fault::new(&node.key, format!("`{text}`"), "a number without a unit in braces").at(place))
+        Err(Fault::new(&node.key, format!("`{text}`"), "a number without a unit in braces").at(place()))
     }
 
     /// The parameter as text, if there is one of that name.
     fn word(&self, name: &str) -> Option<Result<String, Fault>> {
-        let node = self.nodes.iter().find(|node| node.name == name)?;
+        let node = self.by_name.get(name)?;
         Some(self.guarded(node, || self.text(node)))
     }
 
     /// The parameter as a number, if there is one of that name.
     fn quantity(&self, name: &str) -> Option<Result<FormulaNumber, Fault>> {
-        let node = self.nodes.iter().find(|node| node.name == name)?;
+        let node = *self.by_name.get(name)?;
         if let Some(known) = self.evaluated.borrow().get(name) {
             return Some(known.clone());
         }
@@ -272,6 +279,16 @@ impl<'s> Parameters<'s> {
         let result = evaluate();
         self.pending.borrow_mut().pop();
         result
+    }
+
+    /// Does any text in the scene say `{name}`?
+    fn is_used_as_text(&self, name: &str) -> bool {
+        let collect = || {
+            let mut found = HashSet::new();
+            collect_in_braces(self.source.root(), &mut found);
+            found
+        };
+        self.in_braces.get_or_init(collect).contains(name)
     }
 
     /// Names of the parameters, and of the indices where they have values.
@@ -340,13 +357,11 @@ fn is_word(node: &DocumentNode) -> bool {
         && text.chars().all(|letter| letter.is_alphanumeric() || letter == '-' || letter == '_'))
 }
 
-/// Does any text in the scene say `{name}`?
-fn is_used_as_text(name: &str, node: &DocumentNode) -> bool {
-    match &node.value {
-        Value::Text(text) => text
-            .split('{')
-            .skip(1)
-            .any(|rest| rest.split_once('}').is_some_and(|(inner, _)| inner.trim() == name)),
-        _ => node.children().iter().any(|child| is_used_as_text(name, child)),
+/// What the texts at a node and below it have in braces.
+fn collect_in_braces<'s>(node: &'s DocumentNode, found: &mut HashSet<&'s str>) {
+    if let Value::Text(text) = &node.value {
+        let rests = text.split('{').skip(1);
+        found.extend(rests.filter_map(|rest| rest.split_once('}').map(|(inner, _)| inner.trim())));
     }
+    node.children().iter().for_each(|child| collect_in_braces(child, found));
 }

@@ -4,6 +4,8 @@ use super::error::{Fault, Mistake, SceneError};
 use super::{Problem, overrides};
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -12,6 +14,8 @@ use toml::de::{DeTable, DeValue};
 pub struct Source {
     /// The file, then each override: all in one range of byte positions, one after the other.
     documents: Vec<Document>,
+    /// Where the files lie that it names.
+    folder: PathBuf,
     root: DocumentNode,
     declared: Declared,
     told: Vec<Told>,
@@ -29,6 +33,8 @@ struct Document {
     name: String,
     text: String,
     start: usize,
+    /// Where its lines begin, once somebody asks.
+    lines: OnceLock<Vec<usize>>,
 }
 
 /// A value with its key and its place.
@@ -57,13 +63,19 @@ pub(super) enum Value {
     Table(Vec<DocumentNode>),
 }
 
+/// Values that a scene file may have, by the signs around them: what they take in memory is 250 bytes each.
+const MOST_VALUES: usize = 10_000_000;
+/// Bytes that a key may have in its table: the paths of all values in it begin with it.
+const LONGEST_NAME: usize = 1000;
+
 impl Source {
     /// Reads TOML and puts the overrides `name=value` in it.
     ///
     /// # Errors
     /// Text that is no TOML; overrides of parameters that do not exist.
     pub(super) fn read(name: &str, text: &str, overrides: &[(String, String)]) -> Result<Source, SceneError> {
-        let document = Document { name: name.to_string(), text: text.to_string(), start: 0 };
+        let document =
+            Document { name: name.to_string(), text: text.to_string(), start: 0, lines: OnceLock::new() };
         let empty = DocumentNode {
             key: String::new(),
             name: String::new(),
@@ -71,14 +83,34 @@ impl Source {
             span: 0..0,
             value: Value::Table(vec![]),
         };
-        let mut source =
-            Source { documents: vec![document], root: empty, declared: Declared::new(), told: Vec::new() };
+        let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
+        let mut source = Source {
+            documents: vec![document],
+            folder,
+            root: empty,
+            declared: Declared::new(),
+            told: Vec::new(),
+        };
+        // Before it is parsed: each value takes a hundred times its letter.
+        if let Some((at, _)) = text.match_indices([',', '=', '[']).nth(MOST_VALUES) {
+            let (found, allowed) = ("more values than a scene may have", format!("at most {MOST_VALUES}"));
+            let help =
+                "long tables and particles lie in CSV files, and many bodies are repeated by one table";
+            let fault = Fault::new("", found, allowed).help(Some(help.to_string()));
+            return Err(source.show(fault.at(at..at + 1)));
+        }
         let table = DeTable::parse(text).map_err(|error| source.show(syntax_fault(text, &error)))?;
+        if let Some(span) = long_name(table.get_ref()) {
+            let allowed = format!("at most {LONGEST_NAME} bytes");
+            let found = format!("a key of {} bytes", span.len());
+            return Err(source.show(Fault::new("", found, allowed).at(span)));
+        }
         source.root.value = table_value(table.get_ref(), "", 0);
         for (name, value) in overrides {
             let start = source.end() + 1;
             let name = name.trim();
-            let document = Document { name: format!("--set {name}"), text: format!("{name}={value}"), start };
+            let (title, text) = (format!("--set {name}"), format!("{name}={value}"));
+            let document = Document { name: title, text, start, lines: OnceLock::new() };
             source.documents.push(document);
             let place =
                 overrides::OverridePlace { name: start..start + name.len(), value: start + name.len() + 1 };
@@ -123,6 +155,16 @@ impl Source {
         let (document, start, _) = self.within(&self.span_of(key));
         let [line, column] = document.line_and_column(start);
         format!("{}:{line}:{column}", document.name)
+    }
+
+    /// The same whose files lie in another folder than its name says, which is one that text cannot have.
+    pub(super) fn beside(self, folder: &Path) -> Self {
+        Source { folder: folder.to_path_buf(), ..self }
+    }
+
+    /// Where the files lie that it names.
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Name of the file.
@@ -190,7 +232,7 @@ impl Source {
     /// Where the key stands, or the nearest key around it.
     fn span_of(&self, key: &str) -> Range<usize> {
         let mut node = &self.root;
-        while let Some(child) = node.children().iter().find(|child| is_around(&child.key, key)) {
+        while let Some(child) = node.child_around(key) {
             node = child;
         }
         if node.key == key && !matches!(node.value, Value::Table(_)) || node.name.is_empty() {
@@ -204,9 +246,10 @@ impl Source {
 impl Document {
     /// Line and column of a place in the text, each from 1.
     fn line_and_column(&self, at: usize) -> [usize; 2] {
-        let before = &self.text[..at];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        [before.matches('\n').count() + 1, before[line_start..].chars().count() + 1]
+        let starts = || [0].into_iter().chain(self.text.match_indices('\n').map(|(newline, _)| newline + 1));
+        let lines = self.lines.get_or_init(|| starts().collect());
+        let line = lines.partition_point(|&start| start <= at);
+        [line, self.text[lines[line - 1]..at].chars().count() + 1]
     }
 }
 
@@ -217,6 +260,16 @@ impl DocumentNode {
             Value::List(children) | Value::Table(children) => children,
             _ => &[],
         }
+    }
+
+    /// The child that is at a key or around it.
+    fn child_around(&self, key: &str) -> Option<&DocumentNode> {
+        if let Value::List(items) = &self.value {
+            // Entries are found by their numbers.
+            let number = key.get(self.key.len()..)?.strip_prefix('[')?.split_once(']')?.0;
+            return items.get(number.parse::<usize>().ok()?).filter(|item| is_around(&item.key, key));
+        }
+        self.children().iter().find(|child| is_around(&child.key, key))
     }
 
     fn is_table(&self) -> bool {
@@ -267,6 +320,21 @@ fn is_around(outer: &str, inner: &str) -> bool {
 /// The path of `name` in the table `key`.
 pub(super) fn joined(key: &str, name: &str) -> String {
     if key.is_empty() { name.to_string() } else { format!("{key}.{name}") }
+}
+
+/// A key in a table, or in what it holds, that is longer than keys may be.
+fn long_name(table: &DeTable<'_>) -> Option<Range<usize>> {
+    fn within(value: &DeValue<'_>) -> Option<Range<usize>> {
+        match value {
+            DeValue::Array(items) => items.iter().find_map(|item| within(item.get_ref())),
+            DeValue::Table(table) => long_name(table),
+            _ => None,
+        }
+    }
+    table.iter().find_map(|(name, value)| match name.get_ref().len() > LONGEST_NAME {
+        true => Some(name.span()),
+        false => within(value.get_ref()),
+    })
 }
 
 fn table_value(table: &DeTable<'_>, key: &str, shift: usize) -> Value {

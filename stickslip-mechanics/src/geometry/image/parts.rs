@@ -3,7 +3,9 @@
 use super::ImagePart;
 use super::lattice::Lattice;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use std::collections::{BTreeMap, HashSet};
 
 /// The pixels of an image, in space of a stack of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,14 +84,23 @@ pub fn image_parts(
         Solids::Labels { background, .. } => labelled(pixels, *background),
         Solids::Brighter { than, inverted } => connected(pixels, *than, *inverted),
     };
+    let labels: HashSet<u32> = match solids {
+        Solids::Labels { wanted: Some(wanted), .. } => wanted.iter().map(|&label| label as u32).collect(),
+        _ => HashSet::new(),
+    };
     let is_wanted = |number: u32| match solids {
-        Solids::Labels { wanted: Some(wanted), .. } => wanted.contains(&(number as f32)),
+        Solids::Labels { wanted: Some(_), .. } => labels.contains(&number),
         _ => true,
     };
     let (wanted, beside): (Vec<_>, Vec<_>) =
         extents.into_iter().filter(|(_, extent)| extent.pixels >= least).partition(|(of, _)| is_wanted(*of));
     // Those beside them are other bodies, of which another table may ask, and their surfaces are the same then.
-    let near = |(_, extent): &(u32, Extent)| wanted.iter().any(|(_, other)| extent.is_near(other));
+    let boxes = wanted.iter().map(|(_, extent)| Rectangle::from_aabb(extent.around(0)));
+    let tree = RTree::bulk_load(boxes.collect::<Vec<_>>());
+    // Whether their fields may share a pixel.
+    let near = |(_, extent): &(u32, Extent)| {
+        tree.locate_in_envelope_intersecting(extent.around(2 * MARGIN)).next().is_some()
+    };
     let beside: Vec<_> = beside.into_iter().filter(near).collect();
     let mut kept = [wanted, beside].concat();
     kept.sort_by_key(|(number, _)| *number);
@@ -164,9 +175,11 @@ impl Extent {
         self.pixels += 1;
     }
 
-    /// Whether their fields may share a pixel.
-    fn is_near(&self, other: &Extent) -> bool {
-        (0..3).all(|k| self.min[k] <= other.max[k] + 2 * MARGIN && other.min[k] <= self.max[k] + 2 * MARGIN)
+    /// The box with so many pixels more on each side.
+    fn around(&self, more: usize) -> AABB<[i64; 3]> {
+        let [min, max] = [self.min, self.max].map(|corner| corner.map(|x| x as i64));
+        let more = more as i64;
+        AABB::from_corners(min.map(|x| x - more), max.map(|x| x + more))
     }
 
     /// First pixel and numbers of pixels of the field.
@@ -268,13 +281,23 @@ fn connected(pixels: &Pixels, than: f32, inverted: bool) -> (Vec<u32>, Vec<(u32,
 /// Raises coefficients of two fields alike wherever their sum is negative. B-splines are nowhere negative, so the sum
 /// of both fields is not either, and no point is in two parts.
 pub(super) fn part_them(fields: &mut [(u32, [i64; 3], Lattice)]) {
+    let upper = |lower: &[i64; 3], field: &Lattice| -> [i64; 3] {
+        std::array::from_fn(|k| lower[k] + field.counts[k] as i64)
+    };
+    let boxes = fields.iter().enumerate().map(|(number, (_, lower, field))| {
+        GeomWithData::new(Rectangle::from_corners(*lower, upper(lower, field).map(|end| end - 1)), number)
+    });
+    let tree = RTree::bulk_load(boxes.collect::<Vec<_>>());
     for b in 1..fields.len() {
         let (earlier, rest) = fields.split_at_mut(b);
         let (_, lower_b, of_b) = &mut rest[0];
-        for (_, lower_a, of_a) in earlier {
-            let upper = |lower: &[i64; 3], field: &Lattice| -> [i64; 3] {
-                std::array::from_fn(|k| lower[k] + field.counts[k] as i64)
-            };
+        let around = AABB::from_corners(*lower_b, upper(lower_b, of_b).map(|end| end - 1));
+        let near = tree.locate_in_envelope_intersecting(around).map(|found| found.data);
+        // One after the other, as they come.
+        let mut near: Vec<usize> = near.filter(|&a| a < b).collect();
+        near.sort_unstable();
+        for a in near {
+            let (_, lower_a, of_a) = &mut earlier[a];
             let (upper_a, upper_b) = (upper(lower_a, of_a), upper(lower_b, of_b));
             let min: [i64; 3] = std::array::from_fn(|k| lower_a[k].max(lower_b[k]));
             let max: [i64; 3] = std::array::from_fn(|k| upper_a[k].min(upper_b[k]));

@@ -11,6 +11,7 @@ use super::vector::{SpinInput, VectorInput};
 use crate::geometry::{Curved, Pixels, Shape, Solids, image_parts};
 use crate::scene::error::Fault;
 use crate::scene::{self, NamedMaterial};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 table! {
@@ -250,11 +251,12 @@ impl Image {
         context: &Context,
     ) -> Result<(), Fault> {
         let Solids::Labels { wanted: Some(wanted), background } = solids else { return Ok(()) };
+        let found: HashSet<u64> = found.iter().map(|(number, _)| *number).collect();
         for (count, &label) in self.labels.iter().flatten().zip(wanted) {
             if label == *background {
                 return Err(count.refused(context, "another label than that of the background")?);
             }
-            if !found.iter().any(|(number, _)| *number == label as u64) {
+            if !found.contains(&(label as u64)) {
                 return Err(
                     count.refused(context, "a label that pixels of the image have, least_pixels at least")?
                 );

@@ -152,7 +152,7 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<Resolve
     let file = File::read(source.root())?;
     let parameters = Parameters::new(source, file.parameters.as_ref().map_or(&[], |table| &table.0))?;
     let values = parameters.resolved()?;
-    let folder = Path::new(source.name()).parent().unwrap_or(Path::new(""));
+    let folder = source.folder();
     let (shapes, told) = (NamedShapes::default(), RefCell::default());
     let dimension = Dimension::Space;
     let mut context =
