@@ -9,6 +9,7 @@ use super::text::Text;
 use super::vector::{SpinInput, VectorInput};
 use crate::geometry::{CloudPoints, Curved, NoCloud, ParticleSite, Shape, mean_spacing, point_clouds};
 use crate::scene::error::Fault;
+use crate::scene::letters::is_no_letter;
 use crate::scene::suggestion::did_you_mean;
 use crate::scene::{self, BodyMotion, NamedMaterial};
 use std::collections::HashMap;
@@ -44,6 +45,9 @@ const MOST_PARTICLES: usize = 100_000_000;
 
 /// Bodies that it may make.
 const MOST_BODIES: usize = 100_000;
+
+/// Bytes that the name of one may add to that of the table.
+const LONGEST_LABEL: usize = 200;
 
 /// Columns that are read.
 const COLUMNS: [&str; 9] = ["x", "y", "z", "volume", "mass", "vx", "vy", "vz", "body"];
@@ -170,7 +174,14 @@ impl PointCloud {
             let volume =
                 if columns.volume.is_ok() { size * unit.powi(dimension as i32) } else { size / density };
             let site = ParticleSite::of_volume(vector(&columns.position)?, volume, dimension);
-            let label = columns.body.map(|column| record.get(column).unwrap_or_default().to_string());
+            let label = columns.body.map(|column| record.get(column).unwrap_or_default());
+            if let Some((column, label)) = columns.body.zip(label)
+                && (label.contains(is_no_letter) || label.len() > LONGEST_LABEL)
+            {
+                let allowed = format!("a name of at most {LONGEST_LABEL} bytes, without control characters");
+                return Err(fault(column, label, &allowed));
+            }
+            let label = label.map(str::to_string);
             let place = *places.entry(label.clone()).or_insert(clouds.len());
             if place == clouds.len() {
                 if clouds.len() == MOST_BODIES {
