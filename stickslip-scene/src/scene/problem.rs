@@ -1,6 +1,6 @@
 //! What is wrong with a scene, said so that the user can mend it.
 
-use super::letters::escaped;
+use super::letters::{escaped, shortened};
 
 /// A mistake in a scene, tied to the key that holds it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -18,10 +18,12 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// The same with escapes for letters that would steer a terminal: parts of it are words of a file.
+    /// The same with escapes for letters that would steer a terminal, and no longer than anybody reads: parts of it are
+    /// words of a file.
     pub(super) fn shown(self) -> Self {
         let Problem { key, found, allowed, help } = self;
-        let [key, found, allowed] = [key, found, allowed].map(|text| escaped(&text));
-        Problem { key, found, allowed, help: help.as_deref().map(escaped) }
+        let shown = |text: &str| escaped(&shortened(text));
+        let [key, found, allowed] = [key, found, allowed].map(|text| shown(&text));
+        Problem { key, found, allowed, help: help.as_deref().map(shown) }
     }
 }
