@@ -43,7 +43,7 @@ pub fn draw(error: SceneError) {
 }
 
 /// Checks a scene; what is too large for that is to be refused.
-fn check(Loaded { scene, source }: &Loaded) {
+fn check(Loaded { scene, source, .. }: &Loaded) {
     assert!(Manifest::record(scene).is_object());
     let (sites, largest) = sites(scene);
     if largest > REFUSED {

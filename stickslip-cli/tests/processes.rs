@@ -56,6 +56,59 @@ fn processes_write_what_one_writes() {
     }
 }
 
+/// A second process that finds other files than the first one, as on another machine: by a mount that only it sees. It
+/// is named with the file, and nothing is run.
+#[test]
+fn a_file_that_is_another_on_one_machine_is_named() {
+    let workplace = Workplace::new();
+    let rows = |volume: &str| {
+        let places = (0..64).map(|i| [0.025 + 0.05 * f64::from(i % 8), 0.025 + 0.05 * f64::from(i / 8)]);
+        places.map(|[x, y]| format!("{x},{y},{volume}\n")).collect::<String>()
+    };
+    workplace.write("cloud.csv", &format!("x,y,volume\n{}", rows("0.0025")));
+    workplace.write("stale.csv", &format!("x,y,volume\n{}", rows("0.0024")));
+    let cloud = "[[point_clouds]]\nname = \"cloud\"\nmaterial = \"m\"\nfile = \"cloud.csv\"\n";
+    let scene = "[parameters]\nfriction = 0.3\n[space]\ndimension = \"2d\"\ncell = 0.1\n[time]\nend = 1e-3\n\
+                 [materials.m]\ndensity = 1000\nneo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 }\n";
+    workplace.write("scene.toml", &format!("{scene}{cloud}"));
+    let program = env!("CARGO_BIN_EXE_stickslip");
+    for words in [&["run", "scene.toml"][..], &["sweep", "scene.toml", "--set", "friction=0.1,0.2"]] {
+        let apart = format!("mount --bind stale.csv cloud.csv && exec {program} {}", words.join(" "));
+        let mut command = together(&workplace, 1, words);
+        command.args([":", "-n", "1", "unshare", "--mount", "bash", "-c", &apart]);
+        let output = command.output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        if told.contains("unshare failed") {
+            eprintln!("skipped: the test may not mount");
+            return;
+        }
+        assert!(!output.status.success(), "{told}");
+        let named = told.contains("rank 1 ") && told.contains("has another ") && told.contains("cloud.csv: ");
+        assert!(named, "{told}");
+        assert!(!workplace.path("scene.results").exists());
+    }
+}
+
+/// The same program with a byte more.
+#[test]
+fn another_build_on_one_machine_is_named() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let other = workplace.path("other");
+    let mut bytes = std::fs::read(env!("CARGO_BIN_EXE_stickslip")).unwrap();
+    bytes.push(0);
+    std::fs::copy(env!("CARGO_BIN_EXE_stickslip"), &other).unwrap();
+    std::fs::write(&other, bytes).unwrap();
+    let words = ["run", "scene.toml"];
+    let mut command = together(&workplace, 1, &words);
+    command.args([":", "-n", "1", other.to_str().unwrap()]).args(words);
+    let output = command.output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && told.contains("rank 1 on "), "{told}");
+    assert!(told.contains("runs another program: stickslip "), "{told}");
+    assert!(!workplace.path("scene.results").exists());
+}
+
 /// Any of them, the first one too: the launcher ends the others and names it, and another number of processes goes on.
 #[test]
 fn a_run_whose_process_was_killed_goes_on_with_another_number() {

@@ -101,7 +101,7 @@ impl ReadScene {
     /// What `stickslip check` says of it: the text, and the same as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<(String, String)> {
         let pool = pool(None)?;
-        let Loaded { scene, source } = &self.loaded;
+        let Loaded { scene, source, .. } = &self.loaded;
         let report = py.detach(|| pool.install(|| stickslip::check::report(scene)));
         let report = report.map_err(|problem| errors::of_problem(py, &self.loaded, problem))?;
         let report = report.in_memory(stickslip::check::free_memory()).placed(source);

@@ -14,10 +14,11 @@ use crate::sweep::{
 use crate::tell::tell;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use stickslip::scene::Loaded;
+use stickslip::scene::{FileRead, Loaded};
 
 /// Run a scene with every combination of some values, each in a folder of its own, and write one table of the results.
 ///
@@ -146,8 +147,9 @@ impl Arguments {
         let text = members[0].1.source.text().to_owned();
         let WallTime(checkpoint_every) = self.checkpoint_every;
         let (folder_of_all, scene) = (folder_of_all, (scene, text));
-        let family =
-            Family { plan, folder: folder_of_all, scene, runs: wanted.len(), limits, checkpoint_every };
+        let files: BTreeSet<FileRead> = members.iter().flat_map(|each| each.1.files.clone()).collect();
+        let (files, runs) = (files.into_iter().collect(), wanted.len());
+        let family = Family { plan, folder: folder_of_all, scene, files, runs, limits, checkpoint_every };
         let crew = family.crew(folder, [ranks::count(), ranks::neighbours()], stop_on_interrupt()?);
         self.run(&crew, (&family, &members), &wanted, &mut table)?;
         if self.only.is_empty() {

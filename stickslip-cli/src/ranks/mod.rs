@@ -5,6 +5,7 @@
 //! write their pieces of files of particles, and say nothing but what is wrong with them. Of a family of runs
 //! (`mpirun -n 8 stickslip sweep`) each makes some.
 
+mod alike;
 #[cfg(feature = "mpi")]
 mod mpi;
 
@@ -18,7 +19,7 @@ use stickslip::door::Simulation;
 use stickslip::lanes::Processor;
 use stickslip::observe::{PROGRAM, SceneSource};
 use stickslip::ranks::Ranks;
-use stickslip::scene::Loaded;
+use stickslip::scene::{Loaded, WasRead};
 use stickslip::shared;
 use stickslip::step::ParticleLoop;
 
@@ -106,13 +107,7 @@ impl Launched {
         let ranks = Arc::new(ranks);
         let words: Vec<String> =
             std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-        let all = ranks.gather(&bytes_of(&words));
-        if all.iter().any(|said| *said != all[0]) {
-            return Err(Failure::Input(miette!(
-                help = "set STICKSLIP_ALONE=1 for runs that have nothing to do with each other",
-                "the processes of a launcher that share a run were started with other words each"
-            )));
-        }
+        alike::started(&*ranks, &words, &mpi::Mpi::machine())?;
         let alike = |of_this: Vec<u8>| ranks.gather(&of_this).iter().filter(|said| **said == of_this).count();
         let here = alike(bytes_of(&mpi::Mpi::machine()));
         let neighbours = alike(bytes_of(&(mpi::Mpi::machine(), processors_allowed())));
@@ -189,8 +184,8 @@ fn processors_allowed() -> Option<String> {
 /// What the first process wants of the others.
 #[derive(Serialize, Deserialize)]
 enum Task {
-    /// To share the simulation of a scene, which ends at this time [s].
-    Simulate(Box<SceneSource>, f64),
+    /// To share the simulation of a scene, which ends at this time [s], and of which the first has read this.
+    Simulate(Box<SceneSource>, f64, WasRead),
     /// To make some runs of a family.
     Sweep(Family),
     /// Nothing more.
@@ -209,7 +204,7 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
             .map_err(|problem| Failure::input(loaded.source.locate(problem)));
     };
     let source = SceneSource { text: Some(loaded.source.text().to_owned()), ..source.clone() };
-    ranks.hear_first(&bytes_of(&Task::Simulate(Box::new(source), loaded.scene.time.end)));
+    ranks.hear_first(&bytes_of(&Task::Simulate(Box::new(source), loaded.scene.time.end, loaded.was_read())));
     let said = ranks.tell_first(&bytes_of(&None::<String>));
     let unread = said.iter().zip(0..).find_map(|(said, rank)| {
         let problem: Option<String> = serde_json::from_slice(said).ok()?;
@@ -218,7 +213,7 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
     ranks.hear_first(&bytes_of(&unread.is_none()));
     if let Some((rank, problem)) = unread {
         return Err(Failure::Run(miette!(
-            help = "all processes need the scene's folder and what it names",
+            help = "all processes need the scene's folder and what it names, the same on each machine",
             "rank {rank} {problem}"
         )));
     }
@@ -231,21 +226,26 @@ pub fn simulation(loaded: &Loaded, source: &SceneSource) -> Result<Box<dyn Simul
 #[cfg(feature = "mpi")]
 fn follow(here: &mpi::Mpi, ranks: Arc<dyn Ranks>, neighbours: usize) -> bool {
     let task = serde_json::from_slice(&here.hear_first(&[])).expect("all processes are the same program");
-    let (source, end) = match task {
-        Task::Simulate(source, end) => (source, end),
+    let (source, end, first) = match task {
+        Task::Simulate(source, end, first) => (source, end, first),
         Task::Sweep(family) => {
             crate::sweep::among::follow(here, &family, neighbours);
             return true;
         }
         Task::End => return false,
     };
-    let read = source.recorded().unwrap_or_else(|| source.load());
-    let problem =
-        read.as_ref().err().map(|error| format!("on {} cannot read the scene: {error}", mpi::Mpi::machine()));
+    let mut read = source.recorded().unwrap_or_else(|| source.load());
+    if let Ok(loaded) = &mut read {
+        loaded.scene.time.end = end;
+    }
+    let problem = match &read {
+        Err(error) => Some(format!("cannot read the scene: {error}")),
+        Ok(loaded) => first.differs(&loaded.was_read()),
+    };
+    let problem = problem.map(|problem| format!("on {} {problem}", mpi::Mpi::machine()));
     here.tell_first(&bytes_of(&problem));
     let all_read: bool = serde_json::from_slice(&here.hear_first(&[])).unwrap_or(false);
-    if let (true, Ok(mut loaded)) = (all_read, read) {
-        loaded.scene.time.end = end;
+    if let (true, Ok(loaded)) = (all_read, read) {
         // What is wrong with the scene, the first one tells.
         let _ =
             shared::follow(Arc::new(loaded.scene), ParticleLoop::Lanes(Processor::best()), (ranks, PROGRAM));

@@ -12,7 +12,7 @@ use std::thread::{available_parallelism, sleep};
 use std::time::Duration;
 use stickslip::observe::SceneSource;
 use stickslip::ranks::{Ranks, all_of, bytes_of, read, told_first};
-use stickslip::scene::Loaded;
+use stickslip::scene::{FileRead, Loaded, first_other};
 
 /// Wall time between two talks of the processes.
 const BETWEEN_TALKS: Duration = Duration::from_millis(20);
@@ -26,6 +26,8 @@ pub struct Family {
     pub folder: PathBuf,
     /// The scene file, absolute, and its text as the first process has read it.
     pub scene: (PathBuf, String),
+    /// The files that its scenes name, as the first process has read them.
+    pub files: Vec<FileRead>,
     /// How many runs are to be made.
     pub runs: usize,
     /// Runs at a time and threads of each process, where the user gives them.
@@ -136,7 +138,11 @@ pub fn follow(ranks: &dyn Ranks, family: &Family, neighbours: usize) {
         let (path, set) = (path.clone(), member.settings.clone());
         let source = SceneSource { path, set, until: None, text: Some(text.clone()) };
         let loaded = source.recorded().expect("it has its text");
-        loaded.map(|loaded| Arc::new((member.clone(), loaded))).map_err(|error| error.to_string())
+        let loaded = loaded.map_err(|error| error.to_string())?;
+        match first_other(&family.files, &loaded.files) {
+            Some(problem) => Err(format!("rank {} {problem}", ranks.rank())),
+            None => Ok(Arc::new((member.clone(), loaded))),
+        }
     };
     crew.work(&scene_of, |begin, news| {
         loop {

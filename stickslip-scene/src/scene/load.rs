@@ -5,6 +5,7 @@ use super::error::SceneError;
 use super::file::{self, Disk, SceneFiles};
 use super::source::Source;
 use super::suggestion::did_you_mean;
+use super::was_read::{FileRead, Noted, WasRead};
 use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::Path;
@@ -16,6 +17,15 @@ pub struct Loaded {
     pub scene: Scene,
     /// The text, to show where a mistake that is found later stands.
     pub source: Source,
+    /// The files that it names, as they were read.
+    pub files: Vec<FileRead>,
+}
+
+impl Loaded {
+    /// What was read, and what came of it, to be held against what others have read.
+    pub fn was_read(&self) -> WasRead {
+        WasRead::new(&self.files, &self.scene)
+    }
 }
 
 /// Reads the scene file at `path`, with `overrides` as [`parse`] takes them.
@@ -28,7 +38,9 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Loaded, Scene
         help: neighbour(path),
         reason,
     })?;
-    parse(&path.display().to_string(), &text, overrides)
+    let name = path.display().to_string();
+    let source = Source::read(&name, &text, overrides)?;
+    resolved(source.beside(path.parent().unwrap_or(Path::new(""))), &Disk)
 }
 
 /// Reads a scene from its text; `name` stands for the file in messages.
@@ -53,12 +65,16 @@ pub fn parse_beside(
     overrides: &[(String, String)],
     files: &dyn SceneFiles,
 ) -> Result<Loaded, SceneError> {
-    let mut source = Source::read(name, text, overrides)?;
+    resolved(Source::read(name, text, overrides)?, files)
+}
+
+fn resolved(mut source: Source, files: &dyn SceneFiles) -> Result<Loaded, SceneError> {
+    let noted = Noted::new(files);
     let file::Resolved { scene, declared, told } =
-        file::resolve(&source, files).map_err(|fault| source.show(fault))?;
+        file::resolve(&source, &noted).map_err(|fault| source.show(fault))?;
     source.declare(declared);
     source.tell(told);
-    Ok(Loaded { scene, source })
+    Ok(Loaded { scene, source, files: noted.into_read() })
 }
 
 /// Bytes of a scene file at most: a million bodies written one by one.

@@ -28,6 +28,7 @@ mod source;
 mod springs;
 mod suggestion;
 mod units;
+mod was_read;
 
 pub use crate::scheme::{BasisKind, Face, Transfer, VolumeChange};
 pub use body_list::BodyList;
@@ -51,6 +52,7 @@ pub use problem::Problem;
 pub use schema::schema;
 pub use source::Source;
 pub use springs::{Spring, SpringEnd};
+pub use was_read::{FileRead, WasRead, first_other, sum_of_file};
 
 use crate::geometry::{Arrangement, Shape, SiteLattice};
 use crate::material::{Material, Thickness};
