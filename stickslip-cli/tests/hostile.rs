@@ -57,6 +57,138 @@ fn parameters_that_wait_for_each_other_without_end_are_refused() {
     }
 }
 
+/// What grows with the square of a file's length would take minutes here.
+#[test]
+fn long_files_are_read_in_a_time_in_proportion_to_their_length() {
+    let workplace = Workplace::new();
+    let check = |what: &str, text: &str| {
+        workplace.write("scene.toml", text);
+        let begun = Instant::now();
+        let ran = workplace.run(&["check", "scene.toml"]);
+        let took = begun.elapsed();
+        assert!(took < Duration::from_secs(15), "{what}: {took:?}");
+        assert!(ran.stdout.len() + ran.stderr.len() < 4_000_000, "{what}: {} bytes said", ran.stderr.len());
+        ran
+    };
+    let scene = new_scene();
+    let with_parameters =
+        |lines: &str| scene.replacen("[parameters]\n", &format!("[parameters]\n{lines}"), 1);
+    let all = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+
+    let braces = scene.replace("name = \"disk\"", &format!("name = \"{}\"", "{1}".repeat(40_000)));
+    refused(&check("braces", &braces), "grows without end");
+    let numbers = all(20_000, &|i| format!("n{i} = {i}\n"));
+    assert_eq!(check("parameters", &with_parameters(&numbers)).code, Some(0));
+    let chain = all(20_000, &|i| format!("n{i} = \"n{} + 1\"\n", i.wrapping_sub(1)))
+        .replace(&format!("n{}", usize::MAX), "0");
+    assert_eq!(check("a chain of parameters", &with_parameters(&chain)).code, Some(0));
+    let words = all(20_000, &|i| format!("w{i} = \"w {i}\"\n"));
+    refused(&check("words that nobody uses", &with_parameters(&words)), "w0");
+    let rule = "[[contact]]\nbetween = [\"disk\", \"bar\"]\nfriction = 0.1\n";
+    assert_eq!(check("rules", &(scene.clone() + &rule.repeat(20_000))).code, Some(0));
+    let long = scene.replace("name = \"disk\"", &format!("name = \"{}\"", "x".repeat(1_000_000)));
+    let ran = check("a long name", &long);
+    assert!(ran.stderr.len() < 20_000, "{} bytes said", ran.stderr.len());
+    let unknown = with_parameters(&numbers).replace("name = \"disk\"", "name = \"{unknown}\"");
+    let ran = check("an unknown parameter among many", &unknown);
+    refused(&ran, "letters more");
+    assert!(ran.stderr.len() < 20_000, "{} bytes said", ran.stderr.len());
+    refused(&check("a long key", &format!("{scene}\n[{}]\n", "k".repeat(2000))), "a key of 2000 bytes");
+    refused(&check("values", &format!("x = [{}]\n{scene}", "1,".repeat(10_000_001))), "at most 10000000");
+}
+
+/// An image of 65,536 labels, a pixel each: pairs of them are two billions.
+#[test]
+fn an_image_of_many_labels_is_read_in_a_while() {
+    let workplace = Workplace::new();
+    let (side, file) = (256_u32, fs::File::create(workplace.path("labels.png")).unwrap());
+    let mut encoder = png::Encoder::new(file, side, side);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let pixels: Vec<u8> = (0..side * side).flat_map(|label| (label as u16).to_be_bytes()).collect();
+    encoder.write_header().unwrap().write_image_data(&pixels).unwrap();
+    workplace.write(
+        "scene.toml",
+        "[space]\ndimension = \"2d\"\ncell = 0.01\n[time]\nend = 1e-5\n[materials.m]\ndensity = 1000\n\
+         neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 }\n[[images]]\nname = \"b\"\nmaterial = \"m\"\n\
+         file = \"labels.png\"\npixel = 0.02\n",
+    );
+    let begun = Instant::now();
+    // A pixel is parted from all around it, and nothing is left.
+    refused(&workplace.run(&["check", "scene.toml"]), "`b 1` holds no particle");
+    assert!(begun.elapsed() < Duration::from_secs(60), "{:?}", begun.elapsed());
+}
+
+/// Of a scene, of its folder and of the folder for results, with a file beside the scene.
+#[test]
+#[cfg(target_os = "linux")]
+fn names_that_are_no_text_are_names() {
+    use std::os::unix::ffi::OsStrExt;
+    let name = |text: &[u8]| std::ffi::OsStr::from_bytes(text).to_owned();
+    let workplace = Workplace::new();
+    let inside = workplace.path("").join(name(b"caf\xe9"));
+    fs::create_dir(&inside).unwrap();
+    let places = (0..64).map(|i| [0.025 + 0.05 * f64::from(i % 8), 0.025 + 0.05 * f64::from(i / 8)]);
+    let rows: String = places.map(|[x, y]| format!("{x},{y},0.0025\n")).collect();
+    fs::write(inside.join("grains.csv"), format!("x,y,volume\n{rows}")).unwrap();
+    let scene = "[parameters]\nspeed = 1\n[space]\ndimension = \"2d\"\ncell = 0.1\n[time]\nend = 1e-3\n[materials.m]\n\
+                 density = 1000\nneo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 }\n\
+                 [[point_clouds]]\nname = \"b\"\nmaterial = \"m\"\nfile = \"grains.csv\"\nvelocity = [\"speed\", 0]\n";
+    let path = inside.join(name(b"sc\xe8ne.toml"));
+    fs::write(&path, scene).unwrap();
+    let run = |words: &[&str], more: &[&std::ffi::OsStr]| {
+        let output = workplace.command(words).args(more).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{words:?}: {said}");
+    };
+    let out = name(b"r\xe9sults");
+    run(&["check"], &[path.as_os_str()]);
+    run(&["run", "--out"], &[&out, path.as_os_str()]);
+    // Its name cannot be written down.
+    run(&["resume", "--until", "2 ms", "--scene"], &[path.as_os_str(), &out]);
+    run(&["render"], &[&out]);
+    run(&["sweep", "--set", "speed=1,2", "--out"], &[&name(b"sw\xe9ep"), path.as_os_str()]);
+}
+
+/// Names of bodies that a file of particles gives go into tables, and onto the terminal.
+#[test]
+fn names_in_files_of_particles_have_no_control_characters() {
+    let workplace = Workplace::new();
+    let scene = "[space]\ndimension = \"2d\"\ncell = 0.1\n[time]\nend = 1e-3\n[materials.m]\ndensity = 1000\n\
+                 neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 }\n\
+                 [[point_clouds]]\nname = \"b\"\nmaterial = \"m\"\nfile = \"grains.csv\"\n";
+    workplace.write("scene.toml", scene);
+    let write = |head: &str, name: &str| {
+        let places = (0..64).map(|i| [0.025 + 0.05 * f64::from(i % 8), 0.025 + 0.05 * f64::from(i / 8)]);
+        let rows: String = places.map(|[x, y]| format!("{x},{y},0.0025,\"{name}\"\n")).collect();
+        workplace.write("grains.csv", &format!("{head}\n{rows}"));
+    };
+    for name in ["a\u{1b}[31m", "a\nb", "a\u{7}", "\u{9b}31m", "a\u{fffe}"] {
+        write("x,y,volume,body", name);
+        for command in ["check", "run"] {
+            let ran = workplace.run(&[command, "scene.toml"]);
+            refused(&ran, "without control characters");
+            assert!(ran.stderr.contains("grains.csv, line 2, column 4"), "{}", ran.stderr);
+            let steers = |letter: char| letter.is_control() && letter != '\n';
+            assert!(!(ran.stdout + &ran.stderr).contains(steers), "{name:?}");
+        }
+    }
+    write("x,y,volume,body", &"long ".repeat(1000));
+    refused(&workplace.run(&["check", "scene.toml"]), "at most 200 bytes");
+    // The head of a table is quoted where a column lacks.
+    write("x,y\u{1b}[31m,volume,body", "a");
+    let ran = workplace.run(&["check", "scene.toml"]);
+    refused(&ran, "no column y");
+    assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
+    write(&format!("x,{},volume,body", "c".repeat(1_000_000)), "a");
+    let ran = workplace.run(&["check", "scene.toml"]);
+    refused(&ran, "no column y");
+    assert!(ran.stderr.len() < 20_000, "{} bytes said", ran.stderr.len());
+    write("x,y,volume,body", "grain 7");
+    assert_eq!(workplace.run(&["run", "scene.toml"]).code, Some(0));
+    assert!(workplace.succeed(&["network", "scene.results", "--out", "n.graphml"]).contains("n.graphml"));
+}
+
 #[test]
 fn control_characters_do_not_reach_files_and_terminals() {
     let workplace = Workplace::new();

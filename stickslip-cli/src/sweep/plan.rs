@@ -4,12 +4,14 @@ use super::OwnColumn;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
+use stickslip::observe::as_text;
 
 /// What is run: all that a sweep needs to go on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The scene file; absolute, so that whoever goes on may stand elsewhere, or relative to the folder of the sweep
     /// where it lies in there, and goes with it.
+    #[serde(serialize_with = "as_text")]
     pub scene: PathBuf,
     /// What is set.
     pub variations: Vec<Variation>,

@@ -219,6 +219,7 @@ impl<'de> Deserialize<'de> for SceneRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BegunFrom {
     /// The checkpoint or the snapshot.
+    #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// Simulated time there [s].
     pub time: f64,
@@ -230,6 +231,7 @@ pub struct BegunFrom {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SceneSource {
     /// The file.
+    #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// Parameters and keys that have other values than in the file: name and value.
     pub set: Vec<(String, String)>,
@@ -239,6 +241,14 @@ pub struct SceneSource {
     /// The text of the file when it was run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
+}
+
+/// A path in a record, which is text: what is no letter of it is replaced, and the path is not found again.
+///
+/// # Errors
+/// As the serializer.
+pub fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
 }
 
 impl SceneSource {

@@ -66,6 +66,7 @@ pub use joints::JointRow;
 pub use loads::LoadRow;
 pub use manifest::{
     BegunFrom, Manifest, Performance, ReferenceCurve, RunWarning, SceneRecord, SceneSource, Status, Timing,
+    as_text,
 };
 pub use memory::Memory;
 pub use network::Network;

@@ -111,6 +111,7 @@ pub struct Scene {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Start {
     /// Its folder of results, a checkpoint, or a snapshot.
+    #[serde(serialize_with = "path_as_text")]
     pub from: PathBuf,
     /// Time of the snapshot in the folder [s]; `None`: its newest checkpoint.
     pub at: Option<f64>,
@@ -654,6 +655,11 @@ impl Scene {
             (matches(first, a) && matches(second, b)) || (matches(first, b) && matches(second, a))
         })
     }
+}
+
+/// JSON has text alone: what is no letter of a path is replaced.
+fn path_as_text<S: serde::Serializer>(path: &std::path::Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
 }
 
 /// JSON has no infinity; scene files write it `"inf"`.
