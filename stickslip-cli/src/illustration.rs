@@ -4,7 +4,7 @@ use crate::chart::{ChartChoice, chart};
 use crate::drawing::{Background, ColorMap, DrawError, Scale, save};
 use crate::failure::Failure;
 use crate::picture::{
-    self, BoxCorners, ColorQuantity, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
+    self, BoxCorners, ColorQuantity, Outlines, PicturePart, PictureStyle, Quarters, Setting, Skins, Subject,
     SymmetryPlane, ViewPath, Viewpoint,
 };
 use crate::view;
@@ -104,6 +104,7 @@ pub struct Album<'a> {
     /// The largest speed of all snapshots [m/s].
     fastest: Option<f64>,
     skins: Option<Arc<Skins>>,
+    outlines: Option<Arc<Outlines>>,
 }
 
 impl<'a> Album<'a> {
@@ -125,6 +126,7 @@ impl<'a> Album<'a> {
         choice.quantity.is_in(&first).map_err(|what| Failure::Input(miette!("--color: {what}")))?;
         let quarters = picture::quarters(&first, &setting);
         let skins = if choice.balls { None } else { skins(results, (&first, start.time)) };
+        let outlines = outlines(results, (&first, start.time));
         Ok(Album {
             results,
             setting,
@@ -136,6 +138,7 @@ impl<'a> Album<'a> {
             window,
             fastest: None,
             skins,
+            outlines,
         })
     }
 
@@ -219,6 +222,7 @@ impl<'a> Album<'a> {
             fastest: choice.arrows.then(|| self.fastest.unwrap_or_else(|| self.fastest(subject.particles))),
             hidden: choice.hidden.clone(),
             skins: self.skins.clone(),
+            outlines: self.outlines.clone(),
         }
     }
 
@@ -247,6 +251,15 @@ fn skins(results: &Results, (first, time): (&ParticleSnapshot, f64)) -> Option<A
     }
     let scene = view::scene(results).ok().filter(|scene| scene.start.is_none())?;
     Some(Arc::new(Skins::new(&scene, first)))
+}
+
+/// The same of rigid bodies in the plane: their shapes.
+fn outlines(results: &Results, (first, time): (&ParticleSnapshot, f64)) -> Option<Arc<Outlines>> {
+    if first.dimension != 2 || time != 0.0 {
+        return None;
+    }
+    let scene = view::scene(results).ok().filter(|scene| scene.start.is_none())?;
+    Some(Arc::new(Outlines::new(&scene, first)))
 }
 
 /// The part of space that the user wants to see.

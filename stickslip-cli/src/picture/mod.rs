@@ -8,6 +8,7 @@ mod furniture;
 mod grains;
 mod light;
 mod model;
+mod outlines;
 mod plane;
 mod quantity;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod surface;
 
 pub use camera::{ViewPath, Viewpoint};
 pub use grains::{Quarters, quarters};
+pub use outlines::Outlines;
 pub use quantity::{ColorQuantity, QuantityParser, determinant};
 pub use setting::{Floor, Setting, SymmetryPlane};
 pub use skins::Skins;
@@ -70,6 +72,8 @@ pub struct PictureStyle {
     pub hidden: Vec<PicturePart>,
     /// Surfaces of bodies in space, which are balls where there are none.
     pub skins: Option<Arc<Skins>>,
+    /// Shapes of rigid bodies in the plane, which are their particles' squares where there are none.
+    pub outlines: Option<Arc<Outlines>>,
 }
 
 impl PictureStyle {
@@ -330,7 +334,9 @@ impl Scene<'_> {
         let [left, top] = [margins[0] * SAMPLES, margins[1] * SAMPLES];
         let kept: Vec<Grain> =
             grains.iter().filter(|grain| !self.setting.has_floor(grain.body)).copied().collect();
-        let drawn = DrawnGrains::new(if floors.is_empty() { grains } else { &kept }, &window);
+        let shapes = look.outlines.as_ref().map(|outlines| outlines.posed(subject.particles, look.mirror));
+        let shown = if floors.is_empty() { grains } else { &kept };
+        let drawn = DrawnGrains::new(shown, &window, &shapes.unwrap_or_default());
         let own = if look.contours > 0 && subject.smoother().is_none() {
             Some(subject::smoother(subject.particles, subject.quantity))
         } else {
@@ -528,6 +534,7 @@ mod tests {
             fastest: None,
             hidden: Vec::new(),
             skins: None,
+            outlines: None,
         }
     }
 

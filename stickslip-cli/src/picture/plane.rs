@@ -1,8 +1,11 @@
-//! Plane scenes: every particle is drawn as the parallelogram that its square has become.
+//! Plane scenes: every particle is drawn as the parallelogram that its square has become, and rigid bodies by their own
+//! shapes where these are known.
 
 use super::grains::Grain;
+use super::outlines::PosedShape;
 use crate::drawing::{Rgb, SAMPLES, shaded};
 use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 
 /// A window on the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,34 @@ const NOTHING: u32 = u32::MAX;
 const BAND: usize = 48;
 /// Particles are drawn this much larger, so that rounding leaves no cracks between them.
 const OVERLAP: f64 = 1.03;
+/// Half the width of holes between particles that do not stand in rows along the axes, as part of their side: at most
+/// 0.21 where they stand in rows along a diagonal.
+const HOLE: f64 = 0.5;
+/// The most that is looked at for one [pixels].
+const FARTHEST: f64 = 100.0;
+/// A turn in sixteen parts, as steps along either axis.
+const WAYS: [[f64; 2]; 16] = {
+    // Cosines of one, two and three of these parts.
+    const C: [f64; 3] = [0.923_879_532_511_286_7, std::f64::consts::FRAC_1_SQRT_2, 0.382_683_432_365_089_8];
+    [
+        [1.0, 0.0],
+        [-1.0, 0.0],
+        [0.0, 1.0],
+        [0.0, -1.0],
+        [C[1], C[1]],
+        [-C[1], -C[1]],
+        [C[1], -C[1]],
+        [-C[1], C[1]],
+        [C[0], C[2]],
+        [-C[0], -C[2]],
+        [C[0], -C[2]],
+        [-C[0], C[2]],
+        [C[2], C[0]],
+        [-C[2], -C[0]],
+        [C[2], -C[0]],
+        [-C[2], C[0]],
+    ]
+};
 
 impl PlaneView {
     /// Pixel of a position, from the left and from the top.
@@ -48,18 +79,100 @@ pub struct DrawnGrains<'a> {
 }
 
 impl<'a> DrawnGrains<'a> {
-    /// Draws the grains; where they overlap, the later one shows.
-    pub fn new(grains: &'a [Grain], window: &PlaneView) -> Self {
+    /// Draws the grains; where they overlap, the later one shows. Bodies whose shapes are given are drawn by these,
+    /// above all others.
+    pub fn new(grains: &'a [Grain], window: &PlaneView, shapes: &[PosedShape]) -> Self {
         let [width, height] = window.size;
-        let mut grain = vec![NOTHING; width * height];
-        grain.par_chunks_mut(BAND * width).enumerate().for_each(|(band, pixels)| {
-            for (i, each) in grains.iter().enumerate() {
-                draw((i as u32, each), window, band * BAND, pixels);
-            }
-        });
-        let mut drawn = DrawnGrains { grains, size: window.size, grain };
+        let by_shape: HashSet<u32> = shapes.iter().map(|shape| shape.body).collect();
+        let draw_all = |is_meant: &(dyn Fn(&Grain) -> bool + Sync)| {
+            let mut grain = vec![NOTHING; width * height];
+            grain.par_chunks_mut(BAND * width).enumerate().for_each(|(band, pixels)| {
+                for (i, each) in grains.iter().enumerate().filter(|(_, each)| is_meant(each)) {
+                    draw((i as u32, each), window, band * BAND, pixels);
+                }
+            });
+            DrawnGrains { grains, size: window.size, grain }
+        };
+        let mut drawn = draw_all(&|grain| !by_shape.contains(&grain.body));
         drawn.close();
+        drawn.fill_holes(window.scale());
+        if !shapes.is_empty() {
+            let inside = draw_all(&|grain| by_shape.contains(&grain.body));
+            drawn.add_shapes(shapes, &inside, window);
+        }
         drawn
+    }
+
+    /// Fills holes between grains of one body: places from which it is near in all directions.
+    fn fill_holes(&mut self, scale: f64) {
+        let [width, height] = self.size;
+        let side = self.grains.iter().map(|grain| grain.side).fold(0.0, f64::max);
+        let farthest = (HOLE * side * scale).min(FARTHEST) as usize;
+        let around = |x: usize, y: usize, way: [f64; 2]| {
+            (1..=farthest).find_map(|k| {
+                let place = [x as f64 + way[0] * k as f64, y as f64 + way[1] * k as f64];
+                let place = place.map(|x| if x < 0.0 { usize::MAX } else { x.round() as usize });
+                let (index, grain) = self.grain(place[0], place[1])?;
+                Some((index as u32, grain.body, k as f64 <= HOLE * grain.side * scale))
+            })
+        };
+        let filled = |place: usize| {
+            if self.grain[place] != NOTHING {
+                return None;
+            }
+            let (x, y) = (place % width, place / width);
+            let (index, body, is_near) = around(x, y, WAYS[0])?;
+            let others = &WAYS[1..];
+            let is_hole = is_near
+                && others
+                    .iter()
+                    .all(|way| around(x, y, *way).is_some_and(|(_, other, near)| near && other == body));
+            is_hole.then_some((place, index))
+        };
+        let filled: Vec<(usize, u32)> = (0..width * height).into_par_iter().filter_map(filled).collect();
+        filled.into_iter().for_each(|(place, index)| self.grain[place] = index);
+    }
+
+    /// Puts shapes above all; what is in them looks like the nearest grain of their bodies.
+    fn add_shapes(&mut self, shapes: &[PosedShape], inside: &DrawnGrains, window: &PlaneView) {
+        let [width, height] = self.size;
+        let first: HashMap<u32, usize> =
+            inside.grains.iter().enumerate().rev().map(|(i, grain)| (grain.body, i)).collect();
+        for shape in shapes {
+            let [low, high] = shape.reach();
+            let ([left, top], [right, bottom]) =
+                (window.pixel([low[0], high[1]]), window.pixel([high[0], low[1]]));
+            let range = |low: f64, high: f64, end: usize| {
+                (low.floor().max(0.0) as usize).min(end)..(high.ceil().max(0.0) as usize).min(end)
+            };
+            let columns = range(left, right, width);
+            let index = |x: usize, y: usize| {
+                if !shape.holds(window.place([x as f64 + 0.5, y as f64 + 0.5])) {
+                    return None;
+                }
+                inside.nearest([x, y], shape.body).or_else(|| first.get(&shape.body).copied())
+            };
+            let rows: Vec<usize> = range(top, bottom, height).collect();
+            let found: Vec<(usize, usize)> = rows
+                .into_par_iter()
+                .flat_map_iter(|y| columns.clone().filter_map(move |x| Some((y * width + x, index(x, y)?))))
+                .collect();
+            found.into_iter().for_each(|(place, index)| self.grain[place] = index as u32);
+        }
+    }
+
+    /// The grain of a body at a pixel, or in the nearest of some pixels around it.
+    fn nearest(&self, [x, y]: [usize; 2], body: u32) -> Option<usize> {
+        const FARTHEST: i64 = 12;
+        let of_body = |x: i64, y: i64| {
+            let (index, grain) = self.grain(usize::try_from(x).ok()?, usize::try_from(y).ok()?)?;
+            (grain.body == body).then_some(index)
+        };
+        let (x, y) = (x as i64, y as i64);
+        of_body(x, y).or_else(|| {
+            let ways = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)];
+            (1..=FARTHEST).find_map(|k| ways.iter().find_map(|(dx, dy)| of_body(x + k * dx, y + k * dy)))
+        })
     }
 
     /// Fills cracks between grains of one body, a pixel of the file wide at most, which are no edges of it.
@@ -151,7 +264,7 @@ mod tests {
         };
         let grains = [grain];
         let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
-        let drawn = DrawnGrains::new(&grains, &window);
+        let drawn = DrawnGrains::new(&grains, &window, &[]);
         let hit = |x: f64, y: f64| {
             let [column, row] = window.pixel([x, y]);
             drawn.grain(column as usize, row as usize).is_some()
@@ -173,8 +286,40 @@ mod tests {
         let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
         for (body, apart, closed) in [(0, 1.1, true), (0, 1.4, false), (1, 1.1, false)] {
             let grains = [grain(0, -0.5 * apart), grain(body, 0.5 * apart)];
-            let drawn = DrawnGrains::new(&grains, &window);
+            let drawn = DrawnGrains::new(&grains, &window, &[]);
             assert_eq!(drawn.grain(40, 40).is_some(), closed, "{body} {apart}");
+        }
+    }
+
+    /// A disk of squares in rows along the diagonals: holes of 0.41 of their side, which are filled. A crack as wide,
+    /// along an axis or not, stays.
+    #[test]
+    fn holes_between_particles_of_a_body_are_filled_and_cracks_are_not() {
+        let turned = |angle: f64, skip: bool| -> Vec<Grain> {
+            let (sin, cos) = angle.sin_cos();
+            let grain = |i: i32, j: i32| {
+                // The upper half stands off.
+                let [x, y] = [f64::from(i), f64::from(j) + if skip && j > 0 { 0.45 } else { 0.0 }];
+                let position = [cos * x - sin * y, sin * x + cos * y, 0.0];
+                let deformation = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+                // Those of a crack are turned with the lattice, so that it is all that is open.
+                let turned = [cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0];
+                let deformation = if skip { turned } else { deformation };
+                Grain { body: 0, position, side: 1.0, deformation, color: [0.5; 3] }
+            };
+            (-8..=8).flat_map(|i| (-8..=8).map(move |j| grain(i, j))).collect()
+        };
+        // A pixel is 0.05 m.
+        let window = PlaneView { low: [-4.0, -4.0], high: [4.0, 4.0], size: [160, 160] };
+        let empty = |grains: &[Grain]| {
+            let drawn = DrawnGrains::new(grains, &window, &[]);
+            drawn.grain.iter().filter(|index| **index == NOTHING).count()
+        };
+        for degrees in [0.0, 10.0, 22.5, 30.0, 45.0_f64] {
+            assert_eq!(empty(&turned(degrees.to_radians(), false)), 0, "{degrees}");
+            // 8 m long at least, and 0.42 m wide: 1344 pixels.
+            let crack = empty(&turned(degrees.to_radians(), true));
+            assert!(crack > 900, "{degrees}: {crack}");
         }
     }
 }
