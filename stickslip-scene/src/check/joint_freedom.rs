@@ -205,6 +205,10 @@ impl<'a> Freedom<'a> {
         let (point, held_ways, held_turns) = match &joint.kind {
             JointKind::Hinge { point, axis, .. } => (*point, ways.to_vec(), across(axis)[1].clone()),
             JointKind::Slider { axis, .. } => (center, across(axis)[0].clone(), turns.to_vec()),
+            JointKind::Planar { axis, .. } => {
+                let normal = if ways.len() == 3 { vec![*axis] } else { Vec::new() };
+                (center, normal, across(axis)[1].clone())
+            }
             JointKind::Ball { point } => (*point, ways.to_vec(), Vec::new()),
             JointKind::Weld => (center, ways.to_vec(), turns.to_vec()),
             JointKind::Spring { .. } => return Vec::new(),
@@ -217,7 +221,9 @@ impl<'a> Freedom<'a> {
     /// The motor of a joint, the row of the motion that it drives, and what is to be added to its speed.
     fn driven<'j>(&self, joint: &'j Joint) -> Option<(&'j Motor, Row, f64)> {
         let (motor, (row, known)) = match &joint.kind {
-            JointKind::Hinge { axis, motor, .. } => (motor, self.row(joint, None, *axis)),
+            JointKind::Hinge { axis, motor, .. } | JointKind::Planar { axis, motor } => {
+                (motor, self.row(joint, None, *axis))
+            }
             JointKind::Slider { axis, motor } => {
                 (motor, self.row(joint, Some(self.extents[joint.body].center), *axis))
             }
