@@ -114,6 +114,19 @@ impl<T: Real, const D: usize> Default for PointForce<T, D> {
     }
 }
 
+/// When a load acts on a point.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadTime {
+    /// When the step begins [s].
+    pub time: f64,
+    /// The time at which the point is where it is [s].
+    pub now: f64,
+    /// Length of the step [s].
+    pub dt: f64,
+    /// The means over the step of what the load prescribes, along each axis; of what tells places apart none.
+    pub means: [Option<f64>; 3],
+}
+
 /// A point now.
 #[derive(Clone, Copy, Debug)]
 pub struct CarriedPoint<'a, T, const D: usize> {
@@ -205,19 +218,38 @@ impl LoadPoints {
         std::array::from_fn(|i| point.position[i] - self.inset * point.normal[i] + point.moved[i])
     }
 
-    /// What acts on one of its points in a step of `dt` from `time` on, while it is where it is at `now` [s].
+    /// The means over a step of `dt` from `time` on of the forces or velocities that it prescribes at all points alike.
+    pub fn means(&self, time: f64, dt: f64) -> [Option<f64>; 3] {
+        let mean = |value: &Expression| value.is_of_time().then(|| value.over_step(time, dt));
+        match &self.action {
+            Action::Force(values) | Action::Traction(values) | Action::Acceleration(values) => {
+                values.each_ref().map(mean)
+            }
+            Action::Pressure(value) => [mean(value), None, None],
+            Action::Temperature(_) => [None; 3],
+            Action::Support(support) => support.motion.each_ref().map(|motion| match motion {
+                Some(SupportMotion::Velocity(velocity)) => mean(velocity),
+                Some(SupportMotion::Displacement(_)) | None => None,
+            }),
+        }
+    }
+
+    /// What acts on one of its points in a step.
     pub fn at<T: Real, const D: usize>(
         &self,
         carried: CarriedPoint<T, D>,
-        (time, now, dt): (f64, f64, f64),
+        LoadTime { time, now, dt, means }: LoadTime,
         sums: &LoadSums,
     ) -> PointForce<T, D> {
         let CarriedPoint { point, particle, velocity, outside } = carried;
         let place = place_of(particle, point).space();
-        // Forces are those of the middle of the step, displacements those of now.
+        // Forces are the means over the step, displacements those of now.
         let moment = |time: f64| Moment { time, place, start: point.position, outside };
-        let vector = |value: &[Expression; 3], factor: f64| {
-            Vector::of([0, 1, 2].map(|i| factor * value[i].at_moment(&moment(time + 0.5 * dt))))
+        let mean = |i: usize, value: &Expression| {
+            means[i].unwrap_or_else(|| value.mean([time, time + dt], &moment(time)))
+        };
+        let vector = |values: &[Expression; 3], factor: f64| {
+            Vector::of([0, 1, 2].map(|i| factor * mean(i, &values[i])))
         };
         let of = |force| PointForce { force, ..PointForce::default() };
         match &self.action {
@@ -226,7 +258,7 @@ impl LoadPoints {
             Action::Acceleration(acceleration) => of(vector(acceleration, particle.mass.f64())),
             Action::Pressure(pressure) => {
                 let normal = deformed_area(particle, point);
-                let pressure = pressure.at_moment(&moment(time + 0.5 * dt));
+                let pressure = mean(0, pressure);
                 of(Vector::of(normal.map(|area| -pressure * area)))
             }
             Action::Temperature(_) => PointForce::default(),
@@ -248,7 +280,7 @@ impl LoadPoints {
                             (at(now), (after - here) / dt, (after - before) / span)
                         }
                         SupportMotion::Velocity(velocity) => {
-                            (sums.driven[i], velocity.at(time + 0.5 * dt), velocity.at(time))
+                            (sums.driven[i], mean(i, velocity), velocity.at(time))
                         }
                     };
                     let k = self.stiffness * point.measure;
@@ -287,7 +319,7 @@ impl LoadPoints {
             Expression::Table(table) => table.end() <= time,
             // Nobody knows what it says later.
             Expression::Outside(_) => false,
-            Expression::Formula(_) => {
+            Expression::Formula(_) | Expression::Rate(_) => {
                 at(value, time) == at(value, time + dt) && at(value, time) == at(value, end)
             }
         };
@@ -308,7 +340,7 @@ impl LoadPoints {
         let Action::Support(support) = &self.action else { return };
         for (driven, motion) in sums.driven.iter_mut().zip(&support.motion) {
             if let Some(SupportMotion::Velocity(velocity)) = motion {
-                *driven += dt * velocity.at(time + 0.5 * dt);
+                *driven += dt * velocity.over_step(time, dt);
             }
         }
     }

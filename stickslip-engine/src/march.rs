@@ -2,6 +2,7 @@
 //! by one ([`March`]).
 
 use crate::door::{Simulation, StepError};
+use crate::scene::LEAST_PART;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -41,6 +42,8 @@ pub struct FailedStep {
     pub part: f64,
 }
 
+/// So many steps as the last one was are far from the end: that may have been cut for what changes in it.
+const NEAR: f64 = 4.0 / LEAST_PART;
 /// By how much the part grows with each step that does not fail: it doubles in seven.
 const GROWTH: f64 = 1.1;
 /// The limit is never less.
@@ -209,7 +212,7 @@ impl March {
     fn longest(&self, remaining: f64, simulation: &dyn Simulation) -> f64 {
         let part = self.pace.part;
         // Asking for the stable step may cost a look at all particles: only near the end.
-        if part == 1.0 && remaining > 4.0 * self.last && self.last > 0.0 {
+        if part == 1.0 && remaining > NEAR * self.last && self.last > 0.0 {
             return remaining;
         }
         let stable = part * simulation.stable_step();

@@ -27,7 +27,7 @@ use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
 use crate::ranks::Ranks;
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
-    self, Action, BasisKind, BodyMotion, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
+    self, Action, BasisKind, BodyMotion, Changes, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
     StartVelocities,
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
@@ -300,6 +300,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 leaving: scene.domain.as_ref().map_or_else(Default::default, |domain| domain.leaving),
                 filled: all_filled,
                 gravity: scene.gravity.clone(),
+                changes: Changes::of(scene),
                 transfer: scene.time.transfer,
                 pic_share: T::of(pic_share(scene.time.transfer, scene.time.pic_share)),
                 walls: walls::<D>(scene),

@@ -4,8 +4,10 @@
 //! of each step counts as done from outside:
 //!
 //! ```text
-//! W = g . sum m (x^1 - x^0)            g: in the middle of the step
+//! W = dt g . sum m (v^0 + v^1) / 2     g: the mean over the step
 //! ```
+//! It is what its impulse dt m g adds to the kinetic energy, a pulse within one step too. The way of a step, v^1 dt, would
+//! make that up only over many.
 
 use super::Engine;
 use crate::body::Body;
@@ -19,12 +21,12 @@ use crate::threads::each;
 const PART: usize = 1 << 13;
 
 impl<T: Laned, const D: usize> Engine<T, D> {
-    /// Gravity in a step from now on, that of its middle [m/s^2].
+    /// Gravity in a step from now on, its mean [m/s^2].
     pub(super) fn gravity(&self, dt: T) -> Vector<T, D> {
-        Vector::of(self.settings.gravity.at(self.state.time + 0.5 * dt.f64()))
+        Vector::of(self.settings.gravity.over_step(self.state.time, dt.f64()))
     }
 
-    /// sum m x of all bodies that gravity pulls, where it varies; else nothing is summed [kg m].
+    /// sum m v of all bodies that gravity pulls, where it varies; else nothing is summed [kg m/s].
     pub(super) fn weigh(&mut self) -> Option<Vector<f64, 3>> {
         if self.settings.gravity.constant().is_some() {
             return None;
@@ -36,16 +38,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         for &body in self.settings.rigid.iter().filter(|_| counts) {
             let Some(motion) = &self.state.bodies[body].motion else { continue };
             let mass = motion.as_free().map_or(0.0, |free| free.mass);
-            sums.iter_mut().zip(motion.center).for_each(|(sum, x)| sum.add(mass * x));
+            sums.iter_mut().zip(motion.velocity()).for_each(|(sum, v)| sum.add(mass * v));
         }
         for body in self.bodies_here().map(|body| &self.state.bodies[body]).filter(|body| !body.is_rigid()) {
             parts.clear();
             parts.resize_with(body.particles.len().div_ceil(PART), || {
                 std::array::from_fn(|_| ExactSum::default())
             });
-            each(&mut parts, 1, |part, moment| *moment = first_moment(body, part));
-            for moment in &parts {
-                sums.iter_mut().zip(moment).for_each(|(sum, moment)| sum.merge(moment));
+            each(&mut parts, 1, |part, sums| *sums = momentum(body, part));
+            for part in &parts {
+                sums.iter_mut().zip(part).for_each(|(sum, part)| sum.merge(part));
             }
         }
         self.workspace.weights = parts;
@@ -53,22 +55,22 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         Some(Vector(sums.map(|sum| sum.value())))
     }
 
-    /// Books the work of gravity in a step of `dt` that began with these moments, while `time` is still its start.
+    /// Books the work of gravity in a step of `dt` that began with this momentum, while `time` is still its start.
     pub(super) fn book_gravity(&mut self, dt: T, before: Option<Vector<f64, 3>>) {
         if let (Some(before), Some(after)) = (before, self.weigh()) {
             let gravity = Vector(self.gravity(dt).space());
-            self.state.gravity_work += gravity.dot(after - before);
+            self.state.gravity_work += gravity.dot(before + after) * (0.5 * dt.f64());
         }
     }
 }
 
-/// sum m x of a part of a body's particles [kg m].
-fn first_moment<T: Real, const D: usize>(body: &Body<T, D>, part: usize) -> [ExactSum; D] {
+/// sum m v of a part of a body's particles [kg m/s].
+fn momentum<T: Real, const D: usize>(body: &Body<T, D>, part: usize) -> [ExactSum; D] {
     let end = body.particles.len().min((part + 1) * PART);
     let line = |column: usize| &body.particles.line(column)[part * PART..end];
     let masses = line(ColumnStart::<D>::MASS);
     std::array::from_fn(|i| {
-        let places = line(ColumnStart::<D>::POSITION + i);
-        masses.iter().zip(places).map(|(mass, place)| mass.f64() * place.f64()).sum()
+        let speeds = line(ColumnStart::<D>::VELOCITY + i);
+        masses.iter().zip(speeds).map(|(mass, speed)| mass.f64() * speed.f64()).sum()
     })
 }

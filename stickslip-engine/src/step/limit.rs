@@ -6,6 +6,11 @@ use crate::door::StepLimit;
 use crate::lanes::Laned;
 use crate::ranks::largest;
 
+/// A step is shortened so often at most for the way of a rigid body.
+const MOST_CUTS: usize = 8;
+/// A body may go so much further than stable steps let it: its speed changes a little from step to step.
+const MOST_OF_ALLOWED: f64 = 1.5;
+
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     pub(super) fn stable(&self) -> f64 {
@@ -47,6 +52,25 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The step in which a signal of this speed [m/s] crosses as much of a cell as is stable [s].
     fn step_of_signal(&self, speed: f64) -> f64 {
         self.settings.time.courant * self.settings.lattice.cell.f64() / speed
+    }
+
+    /// A step of `dt` from `time` on, shorter where it would take a rigid body of prescribed motion further than a stable
+    /// one should: its speed was another before, by which stable steps go [s].
+    pub(super) fn shortened_by_way(&self, time: f64, dt: f64) -> f64 {
+        let allowed = self.settings.time.courant * self.settings.lattice.cell.f64();
+        let motions =
+            self.settings.rigid.iter().filter_map(|&body| self.state.bodies[body].motion.as_deref());
+        motions.fold(dt, |dt, motion| {
+            let mut dt = dt;
+            for _ in 0..MOST_CUTS {
+                let way = motion.prescribed_way(time, dt);
+                if way <= MOST_OF_ALLOWED * allowed {
+                    break;
+                }
+                dt *= allowed / way;
+            }
+            dt
+        })
     }
 
     /// The longest step that the scene allows, whatever moves [s].

@@ -15,11 +15,10 @@ use crate::door::StepError;
 use crate::exact::ExactSum;
 use crate::grid::{ActiveBlocks, Node};
 use crate::lanes::Laned;
-use crate::load::{CarriedPoint, LoadPoints, LoadSums, PointForce, place_of};
-use crate::outside::OutsidePoints;
+use crate::load::{CarriedPoint, LoadPoints, LoadSums, LoadTime, PointForce, place_of};
 use crate::part::PartPoint;
 use crate::particles::by_number;
-use crate::scene::{Face, OutsideValue};
+use crate::scene::{Face, MeanRoom, OutsideValue};
 use crate::tensor::{Real, Vector, cross};
 use crate::threads::each;
 use serde::{Deserialize, Serialize};
@@ -53,6 +52,8 @@ pub struct LoadRoom<T, const D: usize> {
     middles: Vec<ExactSum>,
     /// Of each load, its impulse, the moment of that, and its work in a step.
     booked: Vec<ExactSum>,
+    /// Of each load, the means over the step of what it prescribes at all points alike.
+    means: Vec<[Option<f64>; 3]>,
     /// What functions from outside are asked and say.
     outside: OutsideRoom,
 }
@@ -63,8 +64,11 @@ struct OutsideRoom {
     /// Where the points of a load are, and where they were at the start [m].
     now: Vec<[f64; 3]>,
     start: Vec<[f64; 3]>,
-    /// What the functions said of each point of all loads; nothing where no load has one.
+    /// What the functions said of each point of all loads, the mean over the step; nothing where no load has one.
     values: Vec<[f64; 3]>,
+    /// Room for their means.
+    said: Vec<[f64; 3]>,
+    bend: Vec<[f64; 3]>,
 }
 
 /// A point of a load in a step.
@@ -198,10 +202,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         Ok(())
     }
 
-    /// What functions from outside say for the middle of the step of the points on which they act, as these are now.
+    /// What functions from outside say of the points on which they act, as these are now: the mean over the step.
     fn ask_functions(&mut self, dt: T) -> Result<(), StepError> {
-        let LoadRoom { places, outside: OutsideRoom { now, start, values }, .. } = &mut self.workspace.loads;
-        let time = self.state.time + 0.5 * dt.f64();
+        let LoadRoom { places, outside, .. } = &mut self.workspace.loads;
+        let OutsideRoom { now, start, values, said, bend } = outside;
+        let (time, dt) = (self.state.time, dt.f64());
         let mut first = 0;
         for (load, places) in self.settings.loads.iter().zip(places) {
             let points = first..first + load.points.len();
@@ -216,7 +221,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             start.clear();
             start.extend(load.points.iter().map(|point| point.position));
             values.resize(points.end.max(values.len()), [0.0; 3]);
-            function.evaluate(OutsidePoints { time, now, start }, &mut values[points]).map_err(|reason| {
+            for room in [&mut *said, &mut *bend] {
+                room.clear();
+                room.resize(points.len(), [0.0; 3]);
+            }
+            let room = MeanRoom { values: &mut values[points], said, bend };
+            room.mean(function, (time, dt), [now, start]).map_err(|reason| {
                 let what = format!("the load on body `{}`", self.state.bodies[load.body].name);
                 StepError::Outside { what, time, reason }
             })?;
@@ -281,14 +291,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let room = &mut self.workspace.loads;
         let loads = &self.settings.loads;
         room.begin(loads);
+        room.means.clear();
+        room.means.extend(loads.iter().map(|load| load.means(self.state.time, dt.f64())));
         room.late = ahead.is_some();
-        let (numbers, values) = (&room.numbers, &room.outside.values);
+        let (numbers, means, values) = (&room.numbers, &room.means, &room.outside.values);
         let (places, bodies, sums) = (&room.places, &self.state.bodies, &self.state.loads);
         let (active, boundary, lattice) =
             (&self.workspace.active, &self.workspace.boundary, &self.settings.lattice);
         let (nodes, nodes_of) = (&self.workspace.field.nodes, self.kernels.nodes_of);
         let time = self.state.time;
-        let time = (time, time + ahead.map_or(0.0, |ahead| ahead.f64()), dt.f64());
+        let now = time + ahead.map_or(0.0, |ahead| ahead.f64());
         each(&mut room.points, POINTS, |i, loaded| {
             let [number, point] = numbers[i].map(|number| number as usize);
             let (load, place) = (&loads[number], places[number][point]);
@@ -321,6 +333,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             loaded.begun = velocity;
             let outside = values.get(i).copied().unwrap_or_default();
             let carried = CarriedPoint { point, particle: &particle, velocity, outside };
+            let time = LoadTime { time, now, dt: dt.f64(), means: means[number] };
             loaded.felt = load.at(carried, time, &sums[number]);
         });
     }
@@ -447,8 +460,9 @@ impl<T, const D: usize> Default for LoadRoom<T, D> {
     fn default() -> Self {
         let (places, numbers, points, foreign) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (nodes, reached, outside) = (Vec::new(), Vec::new(), OutsideRoom::default());
-        let (middles, booked) = (Vec::new(), Vec::new());
-        LoadRoom { places, numbers, points, foreign, nodes, reached, late: false, middles, booked, outside }
+        let (middles, booked, means) = (Vec::new(), Vec::new(), Vec::new());
+        let late = false;
+        LoadRoom { places, numbers, points, foreign, nodes, reached, late, middles, booked, means, outside }
     }
 }
 

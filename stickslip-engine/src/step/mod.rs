@@ -220,12 +220,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
-        let dt = self.stable().min(longest);
-        let time = self.state.time + 0.5 * dt;
+        let time = self.state.time;
+        let dt = self.settings.changes.step(time, self.stable().min(longest));
+        let dt = self.shortened_by_way(time, dt);
         for &body in &self.settings.rigid {
             let body = &mut self.state.bodies[body];
             let Some(motion) = &mut body.motion else { continue };
-            motion.set_time(time).map_err(|reason| {
+            motion.set_step(time, dt).map_err(|reason| {
                 let what = format!("the prescribed motion of body `{}`", body.name);
                 StepError::Outside { what, time, reason }
             })?;

@@ -18,7 +18,7 @@ use crate::door::{RemovedParticles, WrittenValues};
 use crate::exact::ExactSum;
 use crate::grid::{ActiveBlocks, Field, Lattice, Periods};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
-use crate::scene::{Gravity, Joint, Leaving, Time, Transfer};
+use crate::scene::{Changes, Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
 
@@ -36,6 +36,8 @@ pub struct Settings<T, const D: usize> {
     /// Particles of each body at the start; none of rigid ones without bounds.
     pub filled: Vec<usize>,
     pub gravity: Gravity,
+    /// What changes in the scene over time, which steps follow.
+    pub changes: Changes,
     pub transfer: Transfer,
     pub pic_share: T,
     /// Faces of the domain that are not open.
@@ -162,7 +164,7 @@ pub struct Workspace<T, const D: usize> {
     pub damping_impulses: Vec<Vector<T, D>>,
     /// What pairs of bodies did in the step, use by use of contact.
     pub touches: [Vec<BlockSums>; 3],
-    /// Room for sums of mass times place over parts of a body's particles.
+    /// Room for sums of mass times velocity over parts of a body's particles.
     pub weights: Vec<[ExactSum; D]>,
     /// Room for sums over the nodes of each block.
     pub block_sums: Vec<NodeTotals>,

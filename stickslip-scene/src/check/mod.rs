@@ -22,6 +22,7 @@ mod penetration;
 mod periodic;
 mod precision;
 mod press_fit;
+mod pulses;
 mod report;
 mod rigid_pairs;
 mod rules;

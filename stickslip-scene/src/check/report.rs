@@ -9,7 +9,7 @@ use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{
-    dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, rigid_pairs, rules, thickness,
+    dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules, thickness,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
@@ -145,7 +145,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         machine: MachineSpeed::default(),
         wall_time: 0.0,
         rules: rules::rule_reports(scene, &boxes),
-        warnings: warnings(scene, (&extents, &loads), &contacts),
+        warnings: warnings(scene, (&extents, &loads), (&contacts, time_step)),
         loads,
         contacts,
         contacts_unknown,
@@ -185,7 +185,7 @@ impl Report {
 fn warnings(
     scene: &Scene,
     (extents, loads): (&[FillingExtent], &[LoadReport]),
-    contacts: &[ContactEstimate],
+    (contacts, time_step): (&[ContactEstimate], f64),
 ) -> Vec<Warning> {
     (rules::idle(scene))
         .chain(dead_keys::warnings(scene))
@@ -196,6 +196,7 @@ fn warnings(
         .chain(locking::warning(scene))
         .chain(locking::bending(scene))
         .chain(loads::warning(scene, loads))
+        .chain(pulses::warning(scene, time_step))
         .chain(thin_rigid_bodies(scene))
         .chain(mass::warning(scene, extents))
         .chain(thickness::warning(scene))

@@ -30,7 +30,7 @@ impl RigidPath {
         let mut poses = vec![motion.pose()];
         for i in 0..LOOKS {
             // What fails here fails in the run, which says so.
-            motion.set_time((i as f64 + 0.5) * step).ok()?;
+            motion.set_step(i as f64 * step, step).ok()?;
             motion.advance(&motion.rotation(step), step);
             poses.push(motion.pose());
         }

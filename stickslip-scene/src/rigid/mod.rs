@@ -113,6 +113,28 @@ impl RigidMotion {
         Ok(())
     }
 
+    /// Takes the velocities that are prescribed over a step of `dt` from `time` on [s], the means: they move the body as
+    /// far as it moves in that time. A free body keeps its own.
+    ///
+    /// # Errors
+    /// A function from outside that has no answer.
+    pub fn set_step(&mut self, time: f64, dt: f64) -> Result<(), OutsideFault> {
+        if let Drive::Prescribed { velocity, spin } = &self.drive {
+            let mean = |of| OutsideValue::vector_over_step(of, (time, dt));
+            (self.now, self.turning) = (mean(velocity)?, mean(spin)?);
+        }
+        Ok(())
+    }
+
+    /// How far a step of `dt` from `time` on takes the centre of a body whose motion a formula or a table prescribes [m].
+    pub fn prescribed_way(&self, time: f64, dt: f64) -> f64 {
+        let Drive::Prescribed { velocity, .. } = &self.drive else { return 0.0 };
+        // What comes from outside is asked for no more than a step needs.
+        let is_known = velocity.iter().all(|part| part.outside().is_none());
+        let along = |part: &Expression| if is_known { dt * part.over_step(time, dt) } else { 0.0 };
+        velocity.iter().map(along).map(|way| way * way).sum::<f64>().sqrt()
+    }
+
     /// Its momenta and inertia, if it is free.
     pub fn as_free(&self) -> Option<&FreeMotion> {
         match &self.drive {

@@ -2,6 +2,7 @@
 
 use super::formula::{DEEPEST, Function};
 use super::outside::OutsideValue;
+use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 /// A number that may depend on time, and in loads on place: `"5 m/s * min(t / 1 ms, 1)"`, compiled.
@@ -19,6 +20,8 @@ pub enum Expression {
     Table(TimeTable),
     /// A component of what a function from outside says, of the one that is in [`Moment::outside`].
     Outside(OutsideValue),
+    /// How fast another changes, which comes not from outside.
+    Rate(Box<Expression>),
 }
 
 /// Names of the coordinates that formulas of place know: of a point now, and of the same point at the start.
@@ -56,6 +59,19 @@ impl TimeTable {
         self.table.last().map_or(0.0, |[time, _]| *time)
     }
 
+    /// Its rows: times [s], and values.
+    pub fn rows(&self) -> &[[f64; 2]] {
+        &self.table
+    }
+
+    /// Whether the rows beside the one at this time are no nearer to it than this [s].
+    pub fn is_lone(&self, time: f64, near: f64) -> bool {
+        let beside = |[row, _]: &[f64; 2]| *row != time && (row - time).abs() < near;
+        let here = self.table.partition_point(|[row, _]| *row < time);
+        let around = here.saturating_sub(1)..self.table.len().min(here + 2);
+        !self.table[around].iter().any(beside)
+    }
+
     /// The value at time `t` [s].
     pub fn at(&self, t: f64) -> f64 {
         let after = self.table.partition_point(|[time, _]| *time <= t);
@@ -71,7 +87,7 @@ impl TimeTable {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     text: String,
-    code: Vec<Instruction>,
+    pub(super) code: Vec<Instruction>,
 }
 
 /// One instruction: takes its numbers from the stack and leaves one.
@@ -106,7 +122,9 @@ impl Expression {
     pub fn constant(&self) -> Option<f64> {
         match self {
             Expression::Constant(value) => Some(*value),
-            Expression::Formula(_) | Expression::Table(_) | Expression::Outside(_) => None,
+            Expression::Formula(_) | Expression::Table(_) | Expression::Outside(_) | Expression::Rate(_) => {
+                None
+            }
         }
     }
 
@@ -117,6 +135,7 @@ impl Expression {
             Expression::Formula(program) => run(&program.code, moment),
             Expression::Table(table) => table.at(moment.time),
             Expression::Outside(value) => moment.outside[value.component()],
+            Expression::Rate(value) => value.slope(moment),
         }
     }
 
@@ -141,13 +160,18 @@ impl Serialize for Expression {
             Expression::Formula(program) => serializer.serialize_str(&program.text),
             Expression::Table(table) => table.serialize(serializer),
             Expression::Outside(value) => value.serialize(serializer),
+            Expression::Rate(value) => {
+                let mut table = serializer.serialize_map(Some(1))?;
+                table.serialize_entry("rate_of", value)?;
+                table.end()
+            }
         }
     }
 }
 
 /// Numbers that well-formed code has on the stack at most: at each level of brackets and powers an operand and two
 /// arguments of `if` wait for what stands deeper, and the deepest has a number of its own.
-const HIGHEST: usize = 3 * DEEPEST + 1;
+pub(super) const HIGHEST: usize = 3 * DEEPEST + 1;
 
 /// Numbers that wait for their operator. They need no memory of the system's: a step asks for prescribed motion.
 struct Stack {
@@ -155,7 +179,8 @@ struct Stack {
     height: usize,
 }
 
-const WELL_FORMED: &str = "the parser emits an operator after its operands, and refuses what nests too deep";
+pub(super) const WELL_FORMED: &str =
+    "the parser emits an operator after its operands, and refuses what nests too deep";
 
 impl Stack {
     fn push(&mut self, number: f64) {

@@ -30,6 +30,11 @@ impl Gravity {
         [0, 1, 2].map(|i| self.0[i].at(t))
     }
 
+    /// Its mean over a step of `dt` from `time` on [s].
+    pub fn over_step(&self, time: f64, dt: f64) -> [f64; 3] {
+        [0, 1, 2].map(|i| self.0[i].over_step(time, dt))
+    }
+
     /// Its value, if that never changes.
     pub fn constant(&self) -> Option<[f64; 3]> {
         self.0.iter().all(|part| part.constant().is_some()).then(|| self.at(0.0))
@@ -40,11 +45,17 @@ impl Gravity {
         self.constant() == Some([0.0; 3])
     }
 
-    /// Its largest value until `end` [s], looked for at a thousand moments.
+    /// Its largest value until `end` [s], looked for at a thousand moments and at all rows of tables.
     pub fn strongest(&self, end: f64) -> [f64; 3] {
         let square = |value: &[f64; 3]| value.iter().map(|x| x * x).sum::<f64>();
         let samples = if self.constant().is_some() { 0 } else { SAMPLES };
-        let moments = (0..=samples).map(|i| self.at(end * i as f64 / SAMPLES as f64));
+        let tables = self.0.iter().filter_map(|part| match part {
+            Expression::Table(table) => Some(table.rows()),
+            _ => None,
+        });
+        let rows = tables.flatten().map(|[time, _]| *time).filter(|time| (0.0..=end).contains(time));
+        let moments = (0..=samples).map(|i| end * i as f64 / SAMPLES as f64);
+        let moments = moments.chain(rows).map(|time| self.at(time));
         moments.max_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default()
     }
 
@@ -53,7 +64,9 @@ impl Gravity {
         self.0.iter().all(|part| match part {
             Expression::Constant(_) => true,
             Expression::Table(table) => table.end() <= time,
-            Expression::Formula(_) => part.at(time) == part.at(time + dt) && part.at(time) == part.at(end),
+            Expression::Formula(_) | Expression::Rate(_) => {
+                part.at(time) == part.at(time + dt) && part.at(time) == part.at(end)
+            }
             // Nobody knows what it says later.
             Expression::Outside(_) => false,
         })

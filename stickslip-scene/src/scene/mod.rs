@@ -5,6 +5,7 @@
 
 mod body_list;
 mod building;
+mod course;
 mod error;
 mod expression;
 mod file;
@@ -32,6 +33,7 @@ mod was_read;
 
 pub use crate::scheme::{BasisKind, Face, Transfer, VolumeChange};
 pub use body_list::BodyList;
+pub use course::{Change, Changes, Course, LEAST_PART, MOST_PIECES, Passing, TOLERANCE};
 pub use error::{Mistake, SceneError};
 pub use expression::{Expression, Moment, Program, TimeTable};
 pub use file::{Disk, SceneFiles};
@@ -46,7 +48,7 @@ pub use measurements::{
     Anchor, Arrival, FACES, Fabric, Front, Group, Measurements, Observable, Probe, Reading, Section, TimeUnit,
 };
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
-pub use outside::{OutsideUse, OutsideValue};
+pub use outside::{LEAST_CALLS, MOST_CALLS, MeanRoom, OutsideUse, OutsideValue};
 pub use periodic::{PERIOD_STEP, SHORTEST_PERIOD};
 pub use problem::Problem;
 pub use schema::schema;

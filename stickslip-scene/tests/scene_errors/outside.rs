@@ -1,6 +1,7 @@
 //! What a scene file only names, and the program that runs the scene gives.
 
 use crate::check;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stickslip_scene::outside::{OutsideFault, OutsideFunction, OutsidePoints};
 use stickslip_scene::scene::OutsideUse;
 use stickslip_scene::{check as checks, scene};
@@ -122,4 +123,41 @@ fn what_is_given_is_taken_for_what_it_stands() {
     let scene::BodyMotion::Rigid { velocity, spin } = &scene.bodies[1].motion else { panic!("rigid") };
     let at = |values| scene::OutsideValue::vector(values, 0.5).expect("an answer");
     assert_eq!((at(velocity), at(spin)), ([1.0, 2.0, 0.0], [0.0, 0.0, 3.0]));
+}
+
+/// A function that grows with time and one that jumps, at t = 1.13 s, and how often they were asked.
+#[derive(Debug)]
+struct Counted(AtomicUsize, bool);
+
+impl OutsideFunction for Counted {
+    fn evaluate(&self, points: OutsidePoints<'_>, values: &mut [[f64; 3]]) -> Result<(), OutsideFault> {
+        let Counted(asked, jumps) = self;
+        asked.fetch_add(1, Ordering::Relaxed);
+        let jump = if points.time > 1.13 { 5.0 } else { 0.0 };
+        values.fill([if *jumps { jump } else { points.time }, 2.0, 0.0]);
+        Ok(())
+    }
+}
+
+static GROWS: Counted = Counted(AtomicUsize::new(0), false);
+static JUMPS: Counted = Counted(AtomicUsize::new(0), true);
+
+/// Three times in a step, and where it is bent fifteen: the mean of what grows is exact, that of a jump of 5 within a
+/// seventh of a quarter of it.
+#[test]
+fn functions_are_asked_a_few_times_in_a_step() {
+    let mean = |function: &'static Counted| {
+        let mut scene = scene::parse("a.toml", OUTSIDE, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let given: Result<(), ()> = scene.give_functions(|_, _| Ok(Some(function)));
+        given.expect("no error");
+        let scene::BodyMotion::Rigid { velocity, .. } = &scene.bodies[1].motion else { panic!("rigid") };
+        let mean = scene::OutsideValue::vector_over_step(velocity, (1.0, 0.4)).expect("an answer");
+        (mean, function.0.load(Ordering::Relaxed))
+    };
+    let ([grows, still, _], asked) = mean(&GROWS);
+    assert!((grows - 1.2).abs() < 1e-15 && (still - 2.0).abs() < 1e-15, "{grows} {still}");
+    assert_eq!(asked, scene::LEAST_CALLS);
+    let ([jumps, still, _], asked) = mean(&JUMPS);
+    assert!((jumps - 5.0 * 0.27 / 0.4).abs() < 5.0 / 4.0 * 0.15 && (still - 2.0).abs() < 1e-14, "{jumps}");
+    assert_eq!((asked, scene::LEAST_CALLS, scene::MOST_CALLS), (15, 3, 15));
 }

@@ -6,9 +6,10 @@
 //! that grows for a tenth of a second, by a formula and by a table; once more with a constant one, as a number and as a
 //! formula; the looking for rest of a block on a fixed face under gravity that grows.
 //!
-//! Expected: velocities within 1e-6 (the middle of the step is exact but where the growth ends); the works of a gravity
-//! that may vary are what a constant one takes of the potential energy, to round-off; the ledger closes within 1e-3 of
-//! the work, as it does with potential energy; a run that relaxes does not end while gravity grows.
+//! Expected: velocities to 1e-10, as steps take the mean of gravity and end where the growth does; the works of a gravity
+//! that may vary are what a constant one takes of the potential energy, to half a step of 2000: the places to which that
+//! belongs are those half a step later; the ledger of works closes to 1e-10; a run that relaxes does not end while
+//! gravity grows.
 
 use crate::trial::{RUBBER, run_to, start};
 use stickslip::door::Ledger;
@@ -56,10 +57,10 @@ fn gravity_that_grows_gives_its_integral_and_its_work() {
         let (velocities, ledger) = fall(dimension, &gravity.replace('\'', "\""));
         println!("{dimension}: {velocities:?}, {ledger:?}");
         for velocity in velocities {
-            assert!((velocity / -1.5 - 1.0).abs() < 1e-6, "{velocities:?}");
+            assert!((velocity / -1.5 - 1.0).abs() < 1e-10, "{velocities:?}");
         }
         assert!(ledger.potential == 0.0 && ledger.external_work > 0.0, "{ledger:?}");
-        assert!(ledger.total.abs() < 1e-3 * ledger.external_work, "{ledger:?}");
+        assert!(ledger.total.abs() < 1e-10 * ledger.external_work, "{ledger:?}");
     }
 }
 
@@ -70,8 +71,9 @@ fn works_of_gravity_are_what_potential_energy_loses() {
     let (_, by_formula) = fall("plane-strain", "[3, '-5 - 0 * t']".replace('\'', "\"").as_str());
     let lost = number.potential - by_number.potential;
     println!("potential energy lost {lost}, work {}", by_formula.external_work);
-    assert!((by_formula.external_work / lost - 1.0).abs() < 1e-12, "{by_formula:?} {by_number:?}");
-    assert!((by_formula.total - by_number.total + number.potential).abs() < 1e-12 * lost);
+    assert!((by_formula.external_work / lost - 1.0).abs() < 1.1 / 2000.0, "{by_formula:?} {by_number:?}");
+    assert!(by_formula.total.abs() < 1e-10 * lost, "{by_formula:?}");
+    assert!((by_number.total - number.potential).abs() < 1.1 / 2000.0 * lost, "{by_number:?}");
 }
 
 #[test]

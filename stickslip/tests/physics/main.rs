@@ -43,6 +43,7 @@ mod plastic_flow;
 mod point_clouds;
 mod precision;
 mod press_fit;
+mod pulses;
 mod ranks;
 mod reactions;
 mod relaxation;

@@ -163,7 +163,7 @@ impl Link {
             dot(minus(a, b), self.axis)
         };
         let driven = |motor: &crate::scene::Motor, speed: f64| {
-            motor.push.at(time + 0.5 * dt) - motor.stiffness * way - motor.dashpot * speed
+            motor.push.over_step(time, dt) - motor.stiffness * way - motor.dashpot * speed
         };
         let given = match &joint.kind {
             JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => {
@@ -284,16 +284,13 @@ impl Link {
                 Direction::Turn(e) => dot(twisted, e) / dt,
             })
             .collect();
-        let middle = time + 0.5 * dt;
         match &joint.kind {
-            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => {
-                off.extend(motor.speed.as_ref().map(|speed| {
-                    dot(minus(spin(&velocities[0]), spin(&velocities[1])), self.axis) - speed.at(middle)
-                }))
-            }
+            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => off.extend(motor.speed.as_ref().map(|speed| {
+                dot(minus(spin(&velocities[0]), spin(&velocities[1])), self.axis) - speed.over_step(time, dt)
+            })),
             JointKind::Slider { motor, .. } => off.extend(motor.speed.as_ref().map(|speed| {
                 let [v, w] = [0, 1].map(|side| velocity_at(&velocities[side], self.arms[side]));
-                dot(minus(v, w), self.axis) - speed.at(middle)
+                dot(minus(v, w), self.axis) - speed.over_step(time, dt)
             })),
             JointKind::Ball { .. } | JointKind::Weld | JointKind::Spring { .. } => {}
         }
