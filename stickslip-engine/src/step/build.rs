@@ -27,8 +27,8 @@ use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
 use crate::ranks::Ranks;
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
-    self, Action, BasisKind, BodyMotion, Changes, Dimension, Face, NamedMaterial, Precision, Problem, Scene,
-    StartVelocities,
+    self, Action, BasisKind, BodyMotion, Changes, Dimension, Face, Moment, NamedMaterial, Precision, Problem,
+    Scene, StartVelocities,
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
@@ -477,9 +477,26 @@ impl<'a> Begun<'a> {
             Shape::Curved(Curved::PointCloud(cloud)) => cloud.velocities(),
             _ => None,
         };
+        let by_place = |x: [f64; 3]| {
+            let moment = Moment { place: x, start: x, ..Moment::default() };
+            let values = body.velocity_by_place.as_deref();
+            values.map_or([0.0; 3], |values| values.each_ref().map(|value| value.at_moment(&moment)))
+        };
+        let is_none =
+            |(_, site): &&(u32, ParticleSite)| !by_place(site.position).iter().all(|v| v.is_finite());
+        if let Some((_, site)) = kept.iter().find(is_none) {
+            let place = site.position;
+            return Err(Problem {
+                key: format!("bodies[{number}].velocity"),
+                found: format!("{:?} m/s at {place:?} m in `{}`", by_place(place), body.name),
+                allowed: "velocities that are numbers".to_string(),
+                help: None,
+            });
+        }
         let velocity = |number: usize, x| match (&body.motion, motion) {
             (BodyMotion::Free { velocity, spin }, _) => {
-                given.map_or_else(|| about(*center, *velocity, *spin, x), |given| given[number])
+                let at_start = || Vector(about(*center, *velocity, *spin, x)) + Vector(by_place(x));
+                given.map_or_else(|| at_start().0, |given| given[number])
             }
             (_, Some(motion)) => motion.velocity_at(x),
             _ => [0.0; 3],

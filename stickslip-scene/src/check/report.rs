@@ -13,7 +13,7 @@ use super::{
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
-use crate::scene::{Body, BodyMotion, Dimension, Problem, Scene, Source};
+use crate::scene::{Body, BodyMotion, Dimension, Moment, Problem, Scene, Source};
 use crate::tensor::Vector;
 use serde::Serialize;
 
@@ -284,6 +284,17 @@ fn half_diagonal(extent: &FillingExtent, extents: &[FillingExtent]) -> f64 {
     0.5 * Vector(bounds.size()).norm()
 }
 
+/// How fast a body is at the start by the place, at the corners and in the middle of its box at most [m/s].
+fn by_place(body: &Body, extent: &FillingExtent) -> f64 {
+    let Some(velocity) = body.velocity_by_place.as_deref() else { return 0.0 };
+    let at = |place: [f64; 3]| {
+        let moment = Moment { place, start: place, ..Moment::default() };
+        Vector(velocity.each_ref().map(|part| part.at_moment(&moment))).norm()
+    };
+    let places = extent.bounds.corners().chain([extent.center]);
+    places.map(at).filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+}
+
 /// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
 pub(super) fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
     let signal = |(body, extent): (&Body, &FillingExtent)| {
@@ -295,7 +306,8 @@ pub(super) fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
             BodyMotion::FreeRigid(free) => (0.0, free.spin),
         };
         let reach = half_diagonal(extent, extents);
-        wave + Vector(starting_velocity(body)).norm() + Vector(spin).norm() * reach
+        let speed = Vector(starting_velocity(body)).norm() + by_place(body, extent);
+        wave + speed + Vector(spin).norm() * reach
     };
     let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
     let step = scene.time.courant * scene.discretization.cell / fastest;

@@ -204,6 +204,7 @@ impl Body {
             particles_per_side: None,
             motion: BodyMotion::default(),
             stress: None,
+            velocity_by_place: None,
         }
     }
 

@@ -383,6 +383,9 @@ pub struct Body {
     pub motion: BodyMotion,
     /// Cauchy stress before anything moves, by the place: xx, yy, zz, xy, yz, xz, tension positive [Pa]; `None`: none.
     pub stress: Option<Box<[Expression; 6]>>,
+    /// Velocity at the start by the place, of a body that deforms, beside that of `motion` [m/s]; `None`: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity_by_place: Option<Box<[Expression; 3]>>,
 }
 
 /// How a body moves.

@@ -147,3 +147,35 @@ fn plane_scenes() {
         ],
     );
 }
+
+/// What a rigid body is told to do: go with a velocity, or be somewhere; and only what deforms has a velocity by place.
+#[test]
+fn displacements_and_velocities_by_place() {
+    let message = |keys: &str| {
+        let text = format!(
+            "space = {{ dimension = \"plane-strain\", cell = 0.1 }}\ntime.end = 1\n\
+             materials.m = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}\n\
+             [[bodies]]\nname = \"a\"\nmaterial = \"m\"\nshape.box = {{ min = [0, 0], max = [1, 1] }}\n{keys}\n"
+        );
+        stickslip_scene::scene::parse("a.toml", &text, &[])
+            .err()
+            .map_or(String::new(), |error| error.to_string())
+    };
+    for (keys, found) in [
+        (
+            "rigid = { velocity = [1, 0], displacement = [\"1 m/s * t\", 0] }",
+            "rigid.displacement: found `displacement` beside `velocity`; allowed: one of the two",
+        ),
+        ("rigid.displacement = [\"1 m * cos(t / 1 s)\", 0]", "allowed: one that is 0 at t = 0"),
+        ("rigid = { free = {}, displacement = [0, 0] }", "found `displacement` prescribed to a free body"),
+        ("rigid.displacement = [\"1 m/s\", 0]", "a velocity [m/s]; allowed: a length [m]"),
+        ("rigid.free = {}\nvelocity = [\"x * 1 Hz\", 0]", "unknown name `x`"),
+        ("velocity = [\"x * 1 Hz * t\", 0]", "`t`, the time"),
+    ] {
+        let message = message(keys);
+        assert!(message.contains(found), "{keys}: {message}");
+    }
+    for keys in ["rigid.displacement = [\"1 m * sin(t / 1 s)\", 0]", "velocity = [\"x * 1 Hz\", 3]"] {
+        assert_eq!(message(keys), "");
+    }
+}

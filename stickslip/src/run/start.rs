@@ -58,8 +58,10 @@ pub(super) fn carry(
     let here: HashSet<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     let (carried, new): (Vec<_>, Vec<_>) =
         scene.bodies.iter().partition(|body| there.contains(body.name.as_str()));
-    let moves = |motion: &BodyMotion| match motion {
-        BodyMotion::Free { velocity, spin } => [velocity, spin].iter().any(|of| **of != [0.0; 3]),
+    let moves = |body: &crate::scene::Body| match &body.motion {
+        BodyMotion::Free { velocity, spin } => {
+            body.velocity_by_place.is_some() || [velocity, spin].iter().any(|of| **of != [0.0; 3])
+        }
         BodyMotion::FreeRigid(free) => [free.velocity, free.spin].iter().any(|of| *of != [0.0; 3]),
         BodyMotion::Rigid { .. } => false,
     };
@@ -75,7 +77,7 @@ pub(super) fn carry(
         new: named(&mut new.into_iter()),
         left_out: names.iter().filter(|name| !here.contains(name.as_str())).cloned().collect(),
         damaged,
-        passed_over: named(&mut carried.into_iter().filter(|body| moves(&body.motion))),
+        passed_over: named(&mut carried.into_iter().filter(|body| moves(body))),
     };
     Ok(Some((bodies, memory.map(|memory| (memory, names)))))
 }

@@ -211,6 +211,7 @@ pub fn scene() -> Scene {
         particles_per_side: None,
         motion: BodyMotion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
         stress: None,
+        velocity_by_place: None,
     };
     Scene {
         title: "two bodies in flight".into(),

@@ -56,6 +56,7 @@ mod servo_walls;
 mod silo;
 mod spinning_disk;
 mod springs;
+mod starts;
 mod stretched;
 mod struck_bar;
 mod threads;

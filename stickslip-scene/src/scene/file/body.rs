@@ -4,7 +4,7 @@ use super::Context;
 use super::array::ArrayKeys;
 use super::loads::{VaryingVector, positive};
 use super::outside::OrOutside;
-use super::quantity::{Mass, MomentOfInertia, Pressure, QuantityInput, Velocity};
+use super::quantity::{Length, Mass, MomentOfInertia, Pressure, QuantityInput, Velocity};
 use super::read::{Read, table};
 use super::repeat::Repeat;
 use super::shape::ShapeInput;
@@ -42,7 +42,8 @@ table! {
         particles: Option<Word<Arrangement>>,
         /// Particles along each side of a cell, 1 to 8; by default as many as space has.
         particles_per_side: Option<Count>,
-        /// Velocity at the start [m/s]; by default none.
+        /// Velocity at the start [m/s]; of a body that deforms also by the place x, y, z:
+        /// velocity = [0, "1 m/s * cos(pi * y / 6 m)"]. By default none.
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity about its centre of mass at the start [rad/s]; in the plane one number. By default none.
         spin: Option<SpinInput>,
@@ -94,6 +95,9 @@ table! {
         free: Option<FreeInput>,
         /// Velocity of its centre of mass [m/s]: ["0.1 m/s * min(t / 1 ms, 1)", 0, 0]. By default none.
         velocity: Option<OrOutside<VaryingVector<Velocity>>>,
+        /// In place of `velocity`, how far its centre of mass is from where it was at the start [m], 0 at first:
+        /// ["2 cm * sin(t / 10 ms)", 0, 0].
+        displacement: Option<VaryingVector<Length>>,
         /// Angular velocity about its centre of mass [rad/s]; in the plane one number. By default none.
         spin: Option<OrOutside<VaryingSpin>>,
     }
@@ -301,7 +305,7 @@ impl Body {
             body.particles_per_side = Some(count.value(context, 1..=8)?);
         }
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
-        body.motion = keys.motion(context)?;
+        (body.motion, body.velocity_by_place) = keys.motion(context)?;
         body.stress = self.stress.as_ref().map(|stress| stress.resolve(context).map(Box::new)).transpose()?;
         Ok(body)
     }
@@ -315,19 +319,40 @@ pub struct BodyKeys<'a> {
 }
 
 impl BodyKeys<'_> {
-    /// How it moves.
-    pub fn motion(&self, context: &Context) -> Result<BodyMotion, Fault> {
-        let Some(rigid) = &self.rigid else {
-            return Ok(BodyMotion::Free {
-                velocity: self.velocity.as_ref().map_or(Ok([0.0; 3]), |velocity| velocity.value(context))?,
-                spin: self.spin.as_ref().map_or(Ok([0.0; 3]), |spin| spin.value(context))?,
-            });
+    /// How it moves, and the part of its velocity at the start that depends on the place.
+    pub fn motion(&self, context: &Context) -> Result<(BodyMotion, VelocityByPlace), Fault> {
+        match &self.rigid {
+            Some(rigid) => Ok((self.rigid_motion(rigid, context)?, None)),
+            None => self.free_motion(context),
+        }
+    }
+
+    fn free_motion(&self, context: &Context) -> Result<(BodyMotion, VelocityByPlace), Fault> {
+        let spin = self.spin.as_ref().map_or(Ok([0.0; 3]), |spin| spin.value(context))?;
+        let Some(input) = &self.velocity else {
+            return Ok((BodyMotion::Free { velocity: [0.0; 3], spin }, None));
         };
+        let by_place = input.over_place(context)?;
+        if by_place.iter().all(|part| part.constant().is_some()) {
+            return Ok((BodyMotion::Free { velocity: input.value(context)?, spin }, None));
+        }
+        let velocity = by_place.each_ref().map(|part| part.constant().unwrap_or(0.0));
+        if velocity.iter().any(|part| !part.is_finite()) {
+            return Err(input.node().fault("components that are finite"));
+        }
+        let by_place = by_place.map(|part| match part {
+            Expression::Constant(_) => Expression::Constant(0.0),
+            varies => varies,
+        });
+        Ok((BodyMotion::Free { velocity, spin }, Some(Box::new(by_place))))
+    }
+
+    fn rigid_motion(&self, rigid: &Rigid, context: &Context) -> Result<BodyMotion, Fault> {
         let start = self.velocity.as_ref().map(VectorInput::node).or(self.spin.as_ref().map(SpinInput::node));
         if let Some(free) = &rigid.free {
-            let inner =
-                rigid.velocity.as_ref().map(OrOutside::node).or(rigid.spin.as_ref().map(OrOutside::node));
-            if let Some(node) = inner {
+            let displaced = rigid.displacement.as_ref().map(VaryingVector::node);
+            let driven = rigid.velocity.as_ref().map(OrOutside::node).or(displaced);
+            if let Some(node) = driven.or(rigid.spin.as_ref().map(OrOutside::node)) {
                 let found = format!("`{}` prescribed to a free body", node.name);
                 let allowed = format!("the {} at the start as the body's own key, beside `rigid`", node.name);
                 return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
@@ -345,16 +370,36 @@ impl BodyKeys<'_> {
             return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
         }
         let rest = || Ok([0.0; 3].map(Expression::Constant));
-        let velocity = rigid.velocity.as_ref().map_or_else(rest, |velocity| {
-            velocity.resolve(
+        let velocity = match (&rigid.velocity, &rigid.displacement) {
+            (Some(_), Some(displacement)) => {
+                let node = displacement.node();
+                return Err(Fault::new(&node.key, "`displacement` beside `velocity`", "one of the two")
+                    .at(node.name_span.clone()));
+            }
+            (Some(velocity), None) => velocity.resolve(
                 context,
                 |i| i < context.dimension.axes(),
                 |v| v.resolve(context, Dependence::Time),
-            )
-        });
+            ),
+            (None, Some(displacement)) => displaced(displacement, context),
+            (None, None) => rest(),
+        };
         let spin = rigid.spin.as_ref().map_or_else(rest, |spin| {
             spin.resolve(context, |i| i == 2 || !context.dimension.is_plane(), |w| w.resolve(context))
         });
         Ok(BodyMotion::Rigid { velocity: Box::new(velocity?), spin: Box::new(spin?) })
     }
+}
+
+/// What of a velocity at the start depends on the place.
+pub type VelocityByPlace = Option<Box<[Expression; 3]>>;
+
+/// The velocity of what is displaced.
+fn displaced(input: &VaryingVector<Length>, context: &Context) -> Result<[Expression; 3], Fault> {
+    let displacement = input.resolve(context, Dependence::Time)?;
+    // To round-off of what is a metre.
+    if displacement.iter().any(|part| part.at(0.0).is_nan() || part.at(0.0).abs() > 1e-12) {
+        return Err(input.node().fault("one that is 0 at t = 0: how far the body is from where it is drawn"));
+    }
+    Ok(displacement.map(Expression::into_rate))
 }

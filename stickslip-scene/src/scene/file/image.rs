@@ -93,7 +93,7 @@ impl Image {
         let least =
             self.least_pixels.as_ref().map_or(Ok(1), |count| count.value(context, 1..=MOST_PIXELS))?;
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
-        let motion = keys.motion(context)?;
+        let (motion, by_place) = keys.motion(context)?;
         let per_side =
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
         let image = self.pixels(&file, context)?;
@@ -132,6 +132,7 @@ impl Image {
             let shape = Shape::from(Curved::Image(part));
             let mut body = scene::Body::new(&format!("{name} {number}"), material, shape);
             (body.particles_per_side, body.motion) = (per_side, motion.clone());
+            body.velocity_by_place = by_place.clone();
             bodies.add(body, &self.name, declared)?;
         }
         Ok(())

@@ -428,6 +428,11 @@ impl<M: Measure> VaryingVector<M> {
         Ok(resolved)
     }
 
+    /// Where it stands.
+    pub fn node(&self) -> &DocumentNode {
+        &self.node
+    }
+
     fn sized(&self, context: &Context) -> Result<(), Fault> {
         match (self.parts.len(), context.dimension.axes()) {
             (found, wanted) if found == wanted => Ok(()),

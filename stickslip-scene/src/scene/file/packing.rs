@@ -118,11 +118,12 @@ impl Packing {
             None => Arrangement::Lattice,
         };
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
-        let motion = keys.motion(context)?;
+        let (motion, by_place) = keys.motion(context)?;
         let per_side =
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
         let mut body = scene::Body::new(&name, material, grain.clone());
-        (body.particles, body.particles_per_side, body.motion) = (fitted, per_side, motion);
+        (body.particles, body.particles_per_side) = (fitted, per_side);
+        (body.motion, body.velocity_by_place) = (motion, by_place);
         bodies.add_copies(&body, &placements, (&self.name, declared), context)
     }
 

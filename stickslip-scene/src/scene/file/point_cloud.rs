@@ -83,7 +83,7 @@ impl PointCloud {
         }
         let per_side = (cell / spacing).round().clamp(1.0, 8.0) as usize;
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
-        let motion = keys.motion(context)?;
+        let (motion, by_place) = keys.motion(context)?;
         let velocities: Vec<Option<[f64; 3]>> = clouds.iter().map(mean_velocity).collect();
         let name_of = |label: &Option<String>| match label {
             Some(label) => format!("{name} {label}"),
@@ -117,9 +117,9 @@ impl PointCloud {
             let shape = Shape::from(Curved::PointCloud(cloud));
             let mut body = scene::Body::new(&name_of(label), material, shape);
             body.particles_per_side = Some(per_side);
-            body.motion = match velocity {
-                Some(velocity) => BodyMotion::Free { velocity, spin: [0.0; 3] },
-                None => motion.clone(),
+            (body.motion, body.velocity_by_place) = match velocity {
+                Some(velocity) => (BodyMotion::Free { velocity, spin: [0.0; 3] }, None),
+                None => (motion.clone(), by_place.clone()),
             };
             bodies.add(body, &self.name, declared)?;
         }

@@ -31,6 +31,11 @@ impl<M: Measure> VectorInput<M> {
         self.each(context, |part| part.value(context), 0.0)
     }
 
+    /// Its components as functions of the place; in the plane the third is zero.
+    pub fn over_place(&self, context: &Context) -> Result<[Expression; 3], Fault> {
+        self.each(context, |part| part.over_place(context), Expression::Constant(0.0))
+    }
+
     /// The two components of a point in the plane.
     pub fn pair(&self, context: &Context) -> Result<[f64; 2], Fault> {
         match &self.parts[..] {
