@@ -9,7 +9,8 @@ use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{Warning, and_more};
 use super::{
-    dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules, thickness,
+    dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules,
+    thickness,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;

@@ -285,9 +285,12 @@ impl Link {
             })
             .collect();
         match &joint.kind {
-            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => off.extend(motor.speed.as_ref().map(|speed| {
-                dot(minus(spin(&velocities[0]), spin(&velocities[1])), self.axis) - speed.over_step(time, dt)
-            })),
+            JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => {
+                off.extend(motor.speed.as_ref().map(|speed| {
+                    dot(minus(spin(&velocities[0]), spin(&velocities[1])), self.axis)
+                        - speed.over_step(time, dt)
+                }))
+            }
             JointKind::Slider { motor, .. } => off.extend(motor.speed.as_ref().map(|speed| {
                 let [v, w] = [0, 1].map(|side| velocity_at(&velocities[side], self.arms[side]));
                 dot(minus(v, w), self.axis) - speed.over_step(time, dt)

@@ -14,7 +14,7 @@ pub const LEAST_PART: f64 = 0.125;
 const MOST_TURNS: usize = 4;
 /// Further from a straight line within a step than this part of its largest value, a formula is too fast for it.
 const CROOKED: f64 = 0.1;
-/// A row of a table at which it bends by less than this part of its largest value in a step is none.
+/// A row of a table at which its slope changes by less than this part of its largest value in a step is none.
 const BEND: f64 = 0.02;
 /// Enclosures that are looked at for what steps pass over, at most.
 const MOST_LOOKS: usize = 20_000;
@@ -93,7 +93,7 @@ impl Changes {
         }
         for (number, joint) in scene.joints.iter().enumerate() {
             let (motor, push) = match &joint.kind {
-                JointKind::Hinge { motor, .. } => (motor, "torque"),
+                JointKind::Hinge { motor, .. } | JointKind::Planar { motor, .. } => (motor, "torque"),
                 JointKind::Slider { motor, .. } => (motor, "force"),
                 JointKind::Ball { .. } | JointKind::Weld | JointKind::Spring { .. } => continue,
             };
@@ -184,9 +184,7 @@ impl Change {
     /// Whether a turn is worth a step that ends there: jumps and kinks of formulas are.
     fn is_sharp(&self, turn: f64, step: f64) -> bool {
         let Expression::Table(table) = &self.value else { return true };
-        let [before, here, after] = [turn - step, turn, turn + step].map(|t| table.at(t));
-        let is_lone = table.is_lone(turn, step);
-        is_lone || (before - 2.0 * here + after).abs() > BEND * self.largest
+        table.is_lone(turn, step) || table.bend(turn).abs() * step > BEND * self.largest
     }
 
     /// The longest of a step, its half, quarter and eighth in which it is nearly straight; all of the step, if none is.

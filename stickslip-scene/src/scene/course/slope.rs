@@ -105,4 +105,11 @@ impl TimeTable {
             _ => 0.0,
         }
     }
+
+    /// By how much the slope changes at a row, which is at this time [s].
+    pub(super) fn bend(&self, t: f64) -> f64 {
+        let rows = self.rows();
+        let before = rows.partition_point(|[time, _]| *time < t).checked_sub(1);
+        self.slope(t) - before.map_or(0.0, |before| self.slope(rows[before][0]))
+    }
 }
