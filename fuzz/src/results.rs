@@ -64,7 +64,7 @@ pub fn record_seeds() -> Vec<Vec<u8>> {
 }
 
 /// Tables of a run.
-const TABLES: [&str; 15] = [
+const TABLES: [&str; 16] = [
     "bodies.csv",
     "energy.csv",
     "contacts.csv",
