@@ -16,6 +16,8 @@ const MOST_TURNS: usize = 4;
 const CROOKED: f64 = 0.1;
 /// A row of a table at which its slope changes by less than this part of its largest value in a step is none.
 const BEND: f64 = 0.02;
+/// A part of a step that is rounding and not time [-].
+const ROUNDING: f64 = 1e-6;
 /// Enclosures that are looked at for what steps pass over, at most.
 const MOST_LOOKS: usize = 20_000;
 
@@ -108,10 +110,12 @@ impl Changes {
         let next =
             self.0.iter().filter_map(|change| change.next_turn(time, longest)).fold(f64::NAN, f64::min);
         let way = next - time;
-        // Where more than one and less than two steps remain to a turn, they are shared equally.
-        let longest = match way {
-            way if way <= longest => way,
-            way if way < 2.0 * longest => 0.5 * way,
+        // Where more than one and less than two steps remain to a turn, they are shared equally; not where an output
+        // is due at the same time but for round-off.
+        let longest = match way / longest {
+            steps if (steps - 1.0).abs() < ROUNDING => longest,
+            steps if steps < 1.0 => way,
+            steps if steps < 2.0 => 0.5 * way,
             _ => longest,
         };
         self.0.iter().fold(longest, |longest, change| change.bounded(time, longest))
@@ -204,7 +208,9 @@ impl Change {
     fn is_crooked(&self, [from, to]: [f64; 2]) -> bool {
         const PARTS: usize = 8;
         let at = |part: f64| self.value.at(from + (to - from) * part);
-        let ends = [at(TOLERANCE), at(1.0 - TOLERANCE)];
+        // It may turn where the time begins and ends, to round-off.
+        let inner = [TOLERANCE, 1.0 - TOLERANCE].map(|part| from + (to - from) * part);
+        let ends = inner.map(|time| self.value.at(time));
         let (mut low, mut high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         let mut off = 0.0_f64;
         for i in 1..PARTS {
@@ -213,7 +219,7 @@ impl Change {
             off = off.max((value - ends[0] - (ends[1] - ends[0]) * part).abs());
             (low, high) = (low.min(value), high.max(value));
         }
-        let course = self.value.course([from, to], &Moment::default());
+        let course = self.value.course(inner, &Moment::default());
         let hidden = (course.high - high).max(low - course.low);
         let size = self.largest.max(course.high.abs()).max(course.low.abs());
         off.max(hidden) > CROOKED * size

@@ -6,8 +6,8 @@
 //! mean = 1 / (t1 - t0)  integral of f(t) dt from t0 to t1
 //! ```
 //! of a table exactly; of a formula by Gauss's rule of three points on pieces that are halved where they must be, to
-//! [`TOLERANCE`]. Where pieces must be halved is told by two rules that differ, and by enclosures ([`enclosure`]), which
-//! miss neither pulse nor jump.
+//! [`TOLERANCE`]. Where that is, two rules that differ tell, and enclosures ([`enclosure`]), which miss neither pulse
+//! nor jump.
 
 mod changes;
 mod enclosure;
@@ -59,8 +59,8 @@ impl Course {
 }
 
 impl Expression {
-    /// The mean over the time `from` to `to` [s], at the place of a moment; at one time, the value then. What comes from
-    /// outside is the mean that the moment has.
+    /// The mean over the time `from` to `to` [s], at the place of a moment; at one time, the value then. What comes
+    /// from outside is the mean that the moment has.
     pub fn mean(&self, times: [f64; 2], moment: &Moment) -> f64 {
         self.course(times, moment).mean
     }
@@ -119,8 +119,8 @@ impl Expression {
         }
     }
 
-    /// The first turn after `from` and until `to` [s]: a row of a table, a jump or a kink of a formula, to a billionth of
-    /// that time.
+    /// The first turn after `from` and until `to` [s]: a row of a table, a jump or a kink of a formula, to a billionth
+    /// of that time.
     pub fn next_turn(&self, times: [f64; 2]) -> Option<f64> {
         match self {
             Expression::Constant(_) | Expression::Outside(_) => None,

@@ -117,9 +117,15 @@ fn steps_end_where_something_turns() {
     let jump = steps("\"if(t > 3.1 ms, 1, 0)\"", 0.01);
     assert!(meets(&jump, 3.1e-3) && jump.len() < 13, "{jump:?}");
     let noise = steps("\"if(mod(t, 0.01 ms) < 5 us, 1, 0)\"", 0.1);
-    assert_eq!(noise.len(), 102);
+    // A hundred steps, and one more where they add up to less than a tenth by round-off.
+    assert!((101..=102).contains(&noise.len()), "{}", noise.len());
     let slow = steps("\"sin(10 * t)\"", 0.1);
-    assert_eq!(slow.len(), 102);
+    assert!((101..=102).contains(&slow.len()), "{}", slow.len());
+    // Where a turn and the end of what is asked for are one but for round-off, a step ends there.
+    let changes = scene("\"if(t > 3.1 ms, 1, 0)\"");
+    for rest in [0.5e-3, 0.5e-3 - 1e-15, 0.5e-3 + 1e-15] {
+        assert!((changes.step(2.6e-3, rest) - rest).abs() < 1e-14);
+    }
     // Four steps a period: halved.
     let fast = steps("\"sin(500 * pi * t)\"", 0.1).len();
     assert!((110..=450).contains(&fast), "{fast}");
