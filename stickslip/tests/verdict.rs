@@ -165,10 +165,15 @@ impl View for Puppet {
         snapshot
     }
 
-    /// The start is all that is asked for.
+    /// The start and the deformation are all that is asked for.
     fn column(&self, _body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
-        assert_eq!(name, "start");
         let numbers: Vec<u32> = (0..PARTICLES as u32).collect();
+        if name == "deformation" {
+            let all: Vec<TracedParticle> = self.now().collect();
+            let at = move |row: usize, component: usize| all[row].deformation[component / 3][component % 3];
+            return Ok(ColumnRef::new(column::every(name), numbers, at));
+        }
+        assert_eq!(name, "start");
         let at = |row, component| if component < 2 { start(row)[component] } else { 0.0 };
         Ok(ColumnRef::new(column::every(name), numbers, at))
     }

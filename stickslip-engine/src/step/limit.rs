@@ -64,7 +64,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let mut dt = dt;
             for _ in 0..MOST_CUTS {
                 let way = motion.prescribed_way(time, dt);
-                if way <= MOST_OF_ALLOWED * allowed {
+                // What is no number is found as the body moves.
+                if way.is_nan() || way <= MOST_OF_ALLOWED * allowed {
                     break;
                 }
                 dt *= allowed / way;

@@ -145,7 +145,7 @@ mod tests {
 
     fn read(volume: &str) -> WasRead {
         let rows =
-            (0..16).map(|i| format!("{},{},{volume}\n", 0.05 * f64::from(i % 4), 0.05 * f64::from(i / 4)));
+            (0..400).map(|i| format!("{},{},{volume}\n", 0.05 * f64::from(i % 20), 0.05 * f64::from(i / 20)));
         let table = format!("x,y,volume\n{}", rows.collect::<String>());
         let files = BTreeMap::from([(PathBuf::from("there/grains.csv"), table.into_bytes())]);
         parse_beside("there/scene.toml", SCENE, &[], &files).unwrap().was_read()
@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(here.differs(&read("0.0025")), None);
         let told = here.differs(&read("0.00250")).unwrap();
         let [was, is] = ["0.0025", "0.00250"].map(|volume| read(volume).files[0].clone());
-        assert_eq!(is.bytes, was.bytes + 16, "a letter more in each of 16 rows");
+        assert_eq!(is.bytes, was.bytes + 400, "a letter more in each of 400 rows");
         for part in [
             "has another there/grains.csv: ",
             &format!("{} bytes", is.bytes),

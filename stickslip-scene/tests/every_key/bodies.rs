@@ -11,6 +11,11 @@ const CLOUD: &str = "[{ name = 'g', material = 'm', file = 'grains.csv', unit = 
 pub const CASES: &[Cases] = &[
     Cases {
         scene: PLANE,
+        with: &[("space.domain.y_min", "symmetry"), ("bodies[0].shape.box.min", "[0, -1.1]")],
+        keys: &[("bodies[0].beyond_mirrors", "cut")],
+    },
+    Cases {
+        scene: PLANE,
         with: &[(
             "materials.n",
             "{ density = 1, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }",
@@ -25,6 +30,7 @@ pub const CASES: &[Cases] = &[
             ("bodies[0].spin", "1"),
             ("bodies[0].rigid", "{}"),
             ("bodies[3].rigid.velocity", "[1, 0]"),
+            ("bodies[3].rigid.displacement", "['t * 1 m/s', 0]"),
             ("bodies[3].rigid.spin", "1"),
             ("bodies[3].rigid.velocity.outside", "push"),
             ("bodies[3].rigid.spin.outside", "push"),

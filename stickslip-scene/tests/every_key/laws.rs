@@ -154,6 +154,7 @@ pub const CASES: &[Cases] = &[
             ("materials.m.damage.tensile_strength", "2e6"),
             ("materials.m.damage.fracture_energy", "200"),
             ("materials.m.damage.strength_ratio", "8"),
+            ("materials.m.damage.criterion", "modified-von-mises"),
         ],
     },
     Cases {

@@ -137,6 +137,23 @@ pub const CASES: &[Cases] = &[
     },
     Cases {
         scene: SPACE,
+        with: &[("joints", "[{ body = 'c', planar = { normal = [0, 0, 1] } }]")],
+        keys: &[
+            ("joints[0].planar", "{ normal = [0, 1, 0] }"),
+            ("joints[0].planar.normal", "[0, 1, 0]"),
+            ("joints[0].planar.torque", "1"),
+            ("joints[0].planar.speed", "1"),
+            ("joints[0].planar.stiffness", "1"),
+            ("joints[0].planar.dashpot", "1"),
+        ],
+    },
+    Cases {
+        scene: SPACE,
+        with: &[("joints", "[{ body = 'c', planar = { normal = [0, 0, 1], speed = 1 } }]")],
+        keys: &[("joints[0].planar.limit", "1")],
+    },
+    Cases {
+        scene: SPACE,
         with: &[("joints", "[{ body = 'c', hinge = { point = [0, 0, 0], axis = [0, 0, 1] } }]")],
         keys: &[("joints[0].hinge.axis", "[0, 1, 0]")],
     },
