@@ -242,7 +242,8 @@ fn every_key_and_word_of_scene_files_is_explained() {
         "parameters",
     ];
     for key in keys {
-        let measured = ["probes", "arrivals", "fronts", "sections", "groups"].contains(&key.as_str())
+        let measured = ["probes", "arrivals", "fronts", "sections", "groups", "fabric"]
+            .contains(&key.as_str())
             && text.contains(&format!("[[outputs.{key}]]"));
         let heading = measured || tables.contains(&key.as_str()) && text.contains(&format!("[{key}"));
         assert!(heading || text.contains(&format!("`{key}`")), "no word on the key `{key}`");

@@ -312,6 +312,8 @@ impl RunChecks {
         (check, advice): (HealthCheck, &str),
         Finding { body, position, worst, message }: Finding,
     ) -> Option<String> {
+        // A record holds finite numbers alone.
+        let worst = if worst.is_finite() { worst } else { f64::MAX };
         let body = body.map(|body| scene.bodies[body].name.clone());
         let known = self.found.iter().position(|w| w.kind == check.word() && w.body == body);
         let place = known.unwrap_or_else(|| {
