@@ -42,7 +42,7 @@ enum Request {
     /// A file of the nodes of the grid.
     Grid(GridRequest),
     /// The sections of a checkpoint there, packed or not.
-    Sections(PathBuf, bool),
+    Sections(#[serde(with = "path_bytes")] PathBuf, bool),
     /// Where specimens are.
     Bounds(Look),
     /// The light of an instant.
@@ -54,6 +54,7 @@ enum Request {
 /// A file of particles that ranks write together.
 #[derive(Serialize, Deserialize)]
 pub(super) struct ParticlesRequest {
+    #[serde(with = "path_bytes")]
     pub path: PathBuf,
     pub time: f64,
     pub content: SnapshotContent,
@@ -64,6 +65,7 @@ pub(super) struct ParticlesRequest {
 /// A file of nodes that ranks write together.
 #[derive(Serialize, Deserialize)]
 pub(super) struct GridRequest {
+    #[serde(with = "path_bytes")]
     pub path: PathBuf,
     pub time: f64,
     pub content: SnapshotContent,
@@ -91,6 +93,39 @@ fn ask<X: for<'de> Deserialize<'de>>(view: &dyn View, request: &Request) -> io::
     let said = view.ask_ranks(&|| bytes_of(request)).ok_or(io::ErrorKind::Unsupported)?;
     let done: Result<X, Trouble> = read(&said[0]);
     done.map_err(io::Error::from)
+}
+
+/// Paths between processes, which need be no text.
+#[cfg(unix)]
+mod path_bytes {
+    use serde::{Deserializer, Serializer};
+    use std::ffi::OsString;
+    use std::os::unix::ffi::{OsStrExt, OsStringExt};
+    use std::path::{Path, PathBuf};
+
+    pub fn serialize<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(path.as_os_str().as_bytes())
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Error> {
+        let bytes: Vec<u8> = serde_bytes::deserialize(deserializer)?;
+        Ok(OsString::from_vec(bytes).into())
+    }
+}
+
+/// Paths between processes.
+#[cfg(not(unix))]
+mod path_bytes {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use std::path::{Path, PathBuf};
+
+    pub fn serialize<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+        path.serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Error> {
+        PathBuf::deserialize(deserializer)
+    }
 }
 
 /// A path that is the same wherever processes stand, as far as it can be told.
@@ -273,6 +308,7 @@ pub enum ParticlesThere {
 /// Sections of a checkpoint.
 #[derive(Serialize, Deserialize)]
 pub struct CheckpointPlace {
+    #[serde(with = "path_bytes")]
     path: PathBuf,
     sections: Vec<Section>,
 }
@@ -280,6 +316,7 @@ pub struct CheckpointPlace {
 /// Pieces of a snapshot.
 #[derive(Serialize, Deserialize)]
 pub struct SnapshotPlace {
+    #[serde(with = "path_bytes")]
     path: PathBuf,
     pieces: usize,
     /// Of each of its bodies, the place in the state, if that has it.
