@@ -84,6 +84,7 @@ impl Command {
 
     /// Does what the user asks.
     pub fn execute(self) -> Result<(), Failure> {
+        outlive_file_limits();
         match self {
             Command::Run(arguments) => arguments.execute(),
             Command::Resume(arguments) => arguments.execute(),
@@ -211,7 +212,6 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
     }
     let stop = Arc::clone(STOP.get_or_init(Arc::default));
     let flag = Arc::clone(&stop);
-    outlive_file_limits();
     let installed = ctrlc::set_handler(move || {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(Failure::INTERRUPTED));
