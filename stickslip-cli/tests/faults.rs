@@ -242,7 +242,8 @@ impl Fault {
                 fs::rename(&out, workplace.path("elsewhere")).unwrap();
                 let moved = matches!(self, Fault::Moved(_));
                 if !moved {
-                    fs::remove_dir_all(workplace.path("elsewhere")).unwrap();
+                    // The run may make a file in it meanwhile.
+                    while fs::remove_dir_all(workplace.path("elsewhere")).is_err() {}
                 }
                 let ran = ended(child);
                 assert!(!out.exists(), "{self:?}: something was made again");
