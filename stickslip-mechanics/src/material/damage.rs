@@ -23,8 +23,8 @@
 //! runs at an angle to the grid is wider than a cell.
 
 use super::declaration::{
-    Absent, AllowedRange, BadConstants, Constant, Declared, ENERGY_PER_AREA, End, Form, Given, POSITIVE, PRESSURE,
-    Quantity, RATIO,
+    Absent, AllowedRange, BadConstants, Constant, Declared, ENERGY_PER_AREA, End, Form, Given, POSITIVE,
+    PRESSURE, Quantity, RATIO,
 };
 use super::{History, Isotropic, Law, Motion, NeoHookean, Response, elastic};
 use crate::column::Kind;
@@ -496,7 +496,8 @@ mod tests {
                 let (mut along, mut across, mut history) = (1.0, 1.0, [0.0; 3]);
                 let mut now = Motion { dt: 1.0, ..motion_of(Matrix::IDENTITY) };
                 for step in 0..400 {
-                    let (opens, presses) = if step < 200 { (opened * onset() / 200.0, 0.0) } else { (0.0, 5e-4) };
+                    let (opens, presses) =
+                        if step < 200 { (opened * onset() / 200.0, 0.0) } else { (0.0, 5e-4) };
                     (across, along) = (across + opens, along - presses);
                     let thick = now.deformation.0[2][2];
                     let deformation = Matrix([[across, 0.0, 0.0], [0.0, along, 0.0], [0.0, 0.0, thick]]);
