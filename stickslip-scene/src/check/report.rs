@@ -7,7 +7,7 @@ use super::memory::Footprint;
 use super::neighbours::pairs_within;
 use super::rules::RuleReport;
 use super::table::short;
-use super::warning::{Warning, and_more};
+use super::warning::{Warning, and_more, few};
 use super::{
     dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules,
     thickness,
@@ -188,9 +188,9 @@ fn warnings(
     (extents, loads): (&[FillingExtent], &[LoadReport]),
     (contacts, time_step): (&[ContactEstimate], f64),
 ) -> Vec<Warning> {
-    (rules::idle(scene))
-        .chain(dead_keys::warnings(scene))
-        .chain(overlap::warnings(scene))
+    few(rules::idle(scene))
+        .chain(few(dead_keys::warnings(scene)))
+        .chain(few(overlap::warnings(scene)))
         .chain(rigid_pairs::warning(scene, extents))
         .chain(joints::warning(scene))
         .chain(joint_freedom::warning(scene, extents))

@@ -180,7 +180,11 @@ impl<'a> CountedRules<'a> {
             between.map(|name| format!("\"{}\"", name.as_deref().unwrap_or("any"))).join(", ")
         };
         if !before.is_empty() {
-            let named: Vec<_> = before.iter().map(|&i| format!("contact[{i}] ([{}])", pair(i))).collect();
+            let mut named: Vec<_> =
+                before.iter().take(MOST_NAMED).map(|&i| format!("contact[{i}] ([{}])", pair(i))).collect();
+            if before.len() > MOST_NAMED {
+                named.push(format!("{} more", before.len() - MOST_NAMED));
+            }
             let comes = if named.len() == 1 { "comes" } else { "come" };
             return Some(format!(
                 "never holds: {} {comes} before it for every pair that [{}] matches, and the first rule that matches \
@@ -206,6 +210,9 @@ impl<'a> CountedRules<'a> {
         Some(format!("never holds: [{}] matches no pair of bodies: {why}", pair(rule)))
     }
 }
+
+/// Rules that are named as those that come before another.
+const MOST_NAMED: usize = 5;
 
 /// Rules that hold for no pair of bodies, and why.
 pub(super) fn idle(scene: &Scene) -> impl Iterator<Item = Warning> {
@@ -265,6 +272,17 @@ mod tests {
         // One pair is left to it.
         let part = "{ between = ['a', 'b'] }, { between = ['clay', 'iron'] }, { friction = 0.1 }";
         assert_eq!(warnings(&three(), part), [""; 0]);
+    }
+
+    #[test]
+    fn many_rules_before_another_are_counted() {
+        let others = ["b", "c", "d", "e", "f", "g", "h"];
+        let bodies: String =
+            others.iter().zip(1..).map(|(name, i)| ball(name, "iron", 4.0 * f64::from(i))).collect();
+        let before: String = others.iter().map(|name| format!("{{ between = ['a', '{name}'] }}, ")).collect();
+        let found =
+            warnings(&(ball("a", "clay", 0.0) + &bodies), &(before + "{ between = ['clay', 'iron'] }"));
+        assert!(found[0].contains("contact[4] ([\"a\", \"f\"]), 2 more come before it"), "{found:?}");
     }
 
     #[test]

@@ -41,3 +41,18 @@ impl Display for Warning {
 pub(super) fn and_more(first: &str, others: usize) -> String {
     if others == 0 { first.to_string() } else { format!("{first} and {others} more") }
 }
+
+/// Warnings of one kind that are listed.
+const MOST_LISTED: usize = 20;
+
+/// The first of many warnings of one kind, and how many more there are.
+pub(super) fn few(warnings: impl IntoIterator<Item = Warning>) -> impl Iterator<Item = Warning> {
+    let mut listed: Vec<_> = warnings.into_iter().collect();
+    let more = listed.len().saturating_sub(MOST_LISTED);
+    if more > 1 {
+        let key = listed[MOST_LISTED].key.clone();
+        listed.truncate(MOST_LISTED);
+        listed.push(Warning::about(key, format!("and {more} more keys are to be looked at in the same way")));
+    }
+    listed.into_iter()
+}
