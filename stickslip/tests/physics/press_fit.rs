@@ -55,7 +55,7 @@ fn a_ring_is_pressed_on_another() {
     for (position, stress) in snapshot.position.iter().zip(&snapshot.stress) {
         let [x, y, _] = *position;
         let radius = x.hypot(y);
-        if (radius - RADII[1]).abs() < 3e-3 || radius < 12e-3 || radius > 28e-3 {
+        if (radius - RADII[1]).abs() < 3e-3 || !(12e-3..=28e-3).contains(&radius) {
             continue;
         }
         let (cos, sin) = (x / radius, y / radius);
