@@ -10,6 +10,8 @@ use crate::ranks::largest;
 const MOST_CUTS: usize = 8;
 /// A body may go so much further than stable steps let it: its speed changes a little from step to step.
 const MOST_OF_ALLOWED: f64 = 1.5;
+/// Nor is a step made shorter than this part of the stable one for it: a body that goes too far even so, jumps.
+const LEAST_OF_STABLE: f64 = 1e-3;
 
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
@@ -55,8 +57,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 
     /// A step of `dt` from `time` on, shorter where it would take a rigid body of prescribed motion further than a stable
-    /// one should: its speed was another before, by which stable steps go [s].
-    pub(super) fn shortened_by_way(&self, time: f64, dt: f64) -> f64 {
+    /// one of this length should: its speed was another before, by which stable steps go. Where it jumps no step is short
+    /// enough, and one takes it there [s].
+    pub(super) fn shortened_by_way(&self, time: f64, dt: f64, stable: f64) -> f64 {
+        let least = dt.min(LEAST_OF_STABLE * stable);
         let allowed = self.settings.time.courant * self.settings.lattice.cell.f64();
         let motions =
             self.settings.rigid.iter().filter_map(|&body| self.state.bodies[body].motion.as_deref());
@@ -68,7 +72,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 if way.is_nan() || way <= MOST_OF_ALLOWED * allowed {
                     break;
                 }
-                dt *= allowed / way;
+                dt = least.max(dt * allowed / way);
             }
             dt
         })

@@ -221,8 +221,9 @@ impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let time = self.state.time;
-        let dt = self.settings.changes.step(time, self.stable().min(longest));
-        let dt = self.shortened_by_way(time, dt);
+        let stable = self.stable();
+        let dt = self.settings.changes.step(time, stable.min(longest));
+        let dt = self.shortened_by_way(time, dt, stable);
         for &body in &self.settings.rigid {
             let body = &mut self.state.bodies[body];
             let Some(motion) = &mut body.motion else { continue };

@@ -4,8 +4,8 @@
 //!
 //! Set-up: a soft block of 10 kg in cells of 1 cm, whose steps are 100 us long, under pulses of 10 us at 25 times
 //! against the steps, by a table, a formula that jumps and a smooth one, as a force, a pressure, gravity, the push of a
-//! slider and the speed of a support; the path of rigid bodies by such pulses; a block between mirrors that a pulse of
-//! 40 us heats.
+//! slider and the speed of a support; the path of rigid bodies by such pulses, and of one that jumps; a block between
+//! mirrors that a pulse of 40 us heats.
 //!
 //! Expected: the impulse over the mass, of tables and jumps to 1e-9, of smooth pulses to 1e-8; paths to 1e-12 m; steps
 //! that end at each row and jump to 1e-12 s; at the row where the pulse of heat is highest -3 K alpha T within 1 %.
@@ -160,6 +160,24 @@ fn steps_end_at_rows_and_jumps() {
     }
     let usual = simulation.stable_step();
     assert!((ends.len() as f64) < 3e-3 / usual + 14.0, "{} steps of {usual} s", ends.len());
+}
+
+/// No step is short enough for a jump of a displacement: it is taken in one of a thousandth of the usual length at least,
+/// before which steps are no shorter, so at most a thousand more than usual lead there.
+#[test]
+fn a_rigid_body_that_jumps_neither_stops_nor_stalls_the_run() {
+    for jump in [0.02, 0.1, 1.0, 1e3] {
+        let more = format!(
+            "[[bodies]]\nname = \"pusher\"\nmaterial = \"soft\"\n\
+             shape.box = {{ min = [0.3, 0], max = [0.4, 0.1] }}\n\
+             rigid.displacement = [\"if(t < 1.234 ms, 0, {jump} m)\", 0]"
+        );
+        let mut simulation = start(&block("", &more));
+        let mut steps = 0;
+        run_to(&mut *simulation, 3e-3, |_| steps += 1);
+        assert!(steps < 1100, "{jump} m: {steps} steps");
+        near(simulation.bodies()[1].position[0] - 0.35, jump, 1e-12, "way");
+    }
 }
 
 #[test]
