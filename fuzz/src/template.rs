@@ -78,6 +78,9 @@ normal = [0, 1]
 name = "heart"
 at = [0.1, 0.9]
 fixed_in = "material"
+[[outputs.fabric]]
+name = "pile"
+within = { min = [-1, 0], max = [1, 1.5] }
 [[outputs.arrivals]]
 quantity = "speed"
 threshold = 0.2
