@@ -68,6 +68,16 @@ impl PlaneView {
     pub fn scale(&self) -> f64 {
         self.size[0] as f64 / (self.high[0] - self.low[0])
     }
+
+    /// The same window with so many pixels more on every side.
+    fn widened(&self, margin: usize) -> PlaneView {
+        let more = margin as f64 / self.scale();
+        PlaneView {
+            low: self.low.map(|x| x - more),
+            high: self.high.map(|x| x + more),
+            size: self.size.map(|count| count + 2 * margin),
+        }
+    }
 }
 
 /// The grains in a window.
@@ -82,9 +92,9 @@ impl<'a> DrawnGrains<'a> {
     /// Draws the grains; where they overlap, the later one shows. Bodies whose shapes are given are drawn by these,
     /// above all others.
     pub fn new(grains: &'a [Grain], window: &PlaneView, shapes: &[PosedShape]) -> Self {
-        let [width, height] = window.size;
         let by_shape: HashSet<u32> = shapes.iter().map(|shape| shape.body).collect();
-        let draw_all = |is_meant: &(dyn Fn(&Grain) -> bool + Sync)| {
+        let draw_all = |window: &PlaneView, is_meant: &(dyn Fn(&Grain) -> bool + Sync)| {
+            let [width, height] = window.size;
             let mut grain = vec![NOTHING; width * height];
             grain.par_chunks_mut(BAND * width).enumerate().for_each(|(band, pixels)| {
                 for (i, each) in grains.iter().enumerate().filter(|(_, each)| is_meant(each)) {
@@ -93,11 +103,14 @@ impl<'a> DrawnGrains<'a> {
             });
             DrawnGrains { grains, size: window.size, grain }
         };
-        let mut drawn = draw_all(&|grain| !by_shape.contains(&grain.body));
+        // What is around a hole at the edge of the image lies outside it.
+        let margin = farthest(grains, window.scale());
+        let mut drawn = draw_all(&window.widened(margin), &|grain| !by_shape.contains(&grain.body));
         drawn.close();
         drawn.fill_holes(window.scale());
+        drawn.narrow(margin);
         if !shapes.is_empty() {
-            let inside = draw_all(&|grain| by_shape.contains(&grain.body));
+            let inside = draw_all(window, &|grain| by_shape.contains(&grain.body));
             drawn.add_shapes(shapes, &inside, window);
         }
         drawn
@@ -106,8 +119,7 @@ impl<'a> DrawnGrains<'a> {
     /// Fills holes between grains of one body: places from which it is near in all directions.
     fn fill_holes(&mut self, scale: f64) {
         let [width, height] = self.size;
-        let side = self.grains.iter().map(|grain| grain.side).fold(0.0, f64::max);
-        let farthest = (HOLE * side * scale).min(FARTHEST) as usize;
+        let farthest = farthest(self.grains, scale);
         let around = |x: usize, y: usize, way: [f64; 2]| {
             (1..=farthest).find_map(|k| {
                 let place = [x as f64 + way[0] * k as f64, y as f64 + way[1] * k as f64];
@@ -131,6 +143,14 @@ impl<'a> DrawnGrains<'a> {
         };
         let filled: Vec<(usize, u32)> = (0..width * height).into_par_iter().filter_map(filled).collect();
         filled.into_iter().for_each(|(place, index)| self.grain[place] = index);
+    }
+
+    /// Takes so many pixels away on every side.
+    fn narrow(&mut self, margin: usize) {
+        let [width, height] = self.size.map(|count| count - 2 * margin);
+        let rows = self.grain.chunks_exact(self.size[0]).skip(margin).take(height);
+        self.grain = rows.flat_map(|row| &row[margin..margin + width]).copied().collect();
+        self.size = [width, height];
     }
 
     /// Puts shapes above all; what is in them looks like the nearest grain of their bodies.
@@ -222,6 +242,12 @@ impl<'a> DrawnGrains<'a> {
         let index = *self.grain.get(y * width + x).filter(|_| x < width && y < height)? as usize;
         Some((index, self.grains.get(index)?))
     }
+}
+
+/// How far from a hole what is around it may lie [pixels].
+fn farthest(grains: &[Grain], scale: f64) -> usize {
+    let side = grains.iter().map(|grain| grain.side).fold(0.0, f64::max);
+    (HOLE * side * scale).min(FARTHEST) as usize
 }
 
 /// Marks the pixels of one grain on the rows from `top` on: those whose place in the undeformed square is inside it.
