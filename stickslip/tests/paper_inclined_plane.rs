@@ -26,15 +26,15 @@
 //! | cells | contact  | no slip: x, v  | expected        | slip: x, v     | expected  |
 //! |-------|----------|----------------|-----------------|----------------|-----------|
 //! | R/2   | traction | 0.012          | x < 0.02        |                |           |
-//! | R/4   | traction | 0.820, 0.905   | x 0.80 to 0.92  | 0.859, 0.916   |           |
+//! | R/4   | traction | 0.821, 0.902   | x 0.80 to 0.92  | 0.859, 0.916   |           |
 //! | R/8   | traction | 0.948, 0.987   | x 0.93, v 0.96  | 0.924, 0.967   | x 0.91    |
 //! | R/12  | traction | 0.976, 1.001   | x nearer still  |                |           |
-//! | R/4   | default  | 0.950, 0.926   | x within 7 %    | 1.004          |           |
-//! | R/8   | default  | 0.993, 0.987   | x within 3 %    | 1.001, 0.991   | x within 3 % |
+//! | R/4   | default  | 0.986, 0.961   | x within 7 %    | 1.003, 1.000   | x within 3 % |
+//! | R/8   | default  | 1.003, 0.993   | x within 3 %    | 1.001, 0.991   | x within 3 % |
 //!
-//! The older, kinematic rule gives 0.860, 0.950 at R/4 and 0.965, 1.010 at R/8 without slip, and 0.937, 0.980 at R/8
-//! with it. Over the kinetic energy at the end, energy comes from nowhere by 3.4 % with the older rule at R/4, 1.1 %
-//! with the paper's; the default loses 1.0 % there.
+//! The older, kinematic rule gives 0.862, 0.954 at R/4 and 0.965, 1.010 at R/8 without slip, and 0.937, 0.980 at R/8
+//! with it. Over the kinetic energy at the end, energy comes from nowhere by 1.4 % with the older rule at R/4, and is
+//! lost by 1.6 % with the paper's and by 0.9 % with the default.
 //!
 //! Room is left for where nodes lie under the sphere: shifted along the slope by quarters of a cell, the law gap at R/4
 //! without slip gives 0.952 to 0.958, shifted across it 0.930 to 0.952. Runs repeat bit for bit.
@@ -85,12 +85,13 @@ fn the_papers_rule_does_not_roll_on_the_coarsest_cells() {
 }
 
 #[test]
-fn the_papers_rule_lags_on_coarse_cells_and_gains_less_energy_than_the_older_rule() {
+fn the_papers_rule_lags_on_coarse_cells_and_loses_energy_where_the_older_rule_gains() {
     let [paper, older] = ["traction", "kinematic"]
         .map(|contact| Roll::down(NO_SLIP, &[("cells_per_radius", "4"), ("contact", contact), FLIP]));
     assert!((0.80..0.92).contains(&paper.distance), "{paper:?}");
     assert!((0.80..0.92).contains(&older.distance), "{older:?}");
-    assert!(paper.gain.abs() < 0.5 * older.gain, "{paper:?} {older:?}");
+    assert!((-0.025..0.0).contains(&paper.gain), "{paper:?}");
+    assert!((0.005..0.025).contains(&older.gain), "{older:?}");
 }
 
 #[test]
