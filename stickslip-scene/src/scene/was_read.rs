@@ -35,9 +35,10 @@ impl WasRead {
         WasRead { files: files.to_vec(), scene: hex(&sum.0.finalize()) }
     }
 
-    /// What another one has read otherwise, in words: `None` if nothing.
+    /// What another one has read otherwise of the same scene, in words: `None` if nothing.
     pub fn differs(&self, other: &WasRead) -> Option<String> {
-        let file = first_other(&self.files, &other.files);
+        // Whatever the paths are from where each of them stands, the files are the same ones up to the first that differs.
+        let file = self.files.iter().zip(&other.files).find_map(|(file, other)| other_than(file, other));
         // Such as a library of mathematics that rounds otherwise.
         let scene =
             || (self.scene != other.scene).then(|| "made another scene of the same files".to_string());
@@ -45,24 +46,21 @@ impl WasRead {
     }
 }
 
-/// The first file of `others` that is not as it is here, in words.
+/// The first file of `others` that is not as the one of the same path is here, in words.
 pub fn first_other(here: &[FileRead], others: &[FileRead]) -> Option<String> {
+    others.iter().find_map(|other| {
+        let same_place = here.iter().find(|file| file.path == other.path)?;
+        other_than(same_place, other)
+    })
+}
+
+/// That the file of another one is not as it is here, in words.
+fn other_than(here: &FileRead, other: &FileRead) -> Option<String> {
     let short = |file: &FileRead| format!("{} bytes with the sha256 {:.12}...", file.bytes, file.sha256);
-    for other in others {
-        let mut same_place = here.iter().filter(|file| file.path == other.path);
-        match same_place.next() {
-            Some(file) if file.sha256 != other.sha256 => {
-                let path = &other.path;
-                return Some(format!(
-                    "has another {path}: {}, where the first has {}",
-                    short(other),
-                    short(file)
-                ));
-            }
-            _ => {}
-        }
-    }
-    None
+    (here.sha256 != other.sha256).then(|| {
+        let [other_file, file] = [other, here].map(short);
+        format!("has another {}: {other_file}, where the first has {file}", other.path)
+    })
 }
 
 /// Files that note what is read of them.
@@ -144,11 +142,15 @@ mod tests {
     "#;
 
     fn read(volume: &str) -> WasRead {
+        read_in("there", volume)
+    }
+
+    fn read_in(folder: &str, volume: &str) -> WasRead {
         let rows =
             (0..400).map(|i| format!("{},{},{volume}\n", 0.05 * f64::from(i % 20), 0.05 * f64::from(i / 20)));
         let table = format!("x,y,volume\n{}", rows.collect::<String>());
-        let files = BTreeMap::from([(PathBuf::from("there/grains.csv"), table.into_bytes())]);
-        parse_beside("there/scene.toml", SCENE, &[], &files).unwrap().was_read()
+        let files = BTreeMap::from([(PathBuf::from(folder).join("grains.csv"), table.into_bytes())]);
+        parse_beside(&format!("{folder}/scene.toml"), SCENE, &[], &files).unwrap().was_read()
     }
 
     #[test]
@@ -167,6 +169,15 @@ mod tests {
         ] {
             assert!(told.contains(part), "{told}");
         }
+    }
+
+    /// The first process reads by the path that it was given, others by an absolute one.
+    #[test]
+    fn a_file_is_the_same_by_another_path() {
+        let here = read_in("there", "0.0025");
+        assert_eq!(here.differs(&read_in("/far/there", "0.0025")), None);
+        let told = here.differs(&read_in("/far/there", "0.0024")).unwrap();
+        assert!(told.starts_with("has another /far/there/grains.csv: "), "{told}");
     }
 
     /// The digest of nothing, by FIPS 180-4.
