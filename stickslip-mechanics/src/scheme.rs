@@ -20,6 +20,17 @@ pub enum BasisKind {
     Cubic,
 }
 
+/// Where a body that deforms is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Interior {
+    /// On the grid that all bodies share, by the material point method.
+    #[default]
+    Grid,
+    /// On a grid of its own undeformed places, by quadratic B-splines whose nodes stay.
+    Reference,
+}
+
 /// What a face of the domain does. Faces other than `Open` lie on grid nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

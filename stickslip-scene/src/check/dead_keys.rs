@@ -3,7 +3,8 @@
 use super::rules::CountedRules;
 use super::warning::Warning;
 use crate::scene::{
-    ContactLaw, ContactRule, Damping, Expression, HealthCheck, JointKind, Motor, Normal, Scene,
+    BasisKind, Body, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior, JointKind, Motor,
+    Normal, Scene,
 };
 
 /// What a scene says and nothing comes of, a line for each kind.
@@ -11,6 +12,8 @@ pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
     (rigid_rules(scene).into_iter())
         .chain(nothing_deforms(scene))
         .chain(nothing_falls(scene))
+        .chain(nothing_on_the_grid(scene))
+        .chain(rigid_interiors(scene))
         .chain(overruled_drift(scene))
         .chain(overruled_motor(scene))
 }
@@ -29,16 +32,51 @@ fn rigid_rules(scene: &Scene) -> Vec<Warning> {
         ];
         let dead: Vec<&str> = keys.iter().filter(|(_, dead)| *dead).map(|(key, _)| *key).collect();
         let (first, others) = dead.split_first().filter(|_| rules.is_of_rigid_bodies(rule))?;
-        let others: Vec<String> = others.iter().map(|key| format!("`{key}`")).collect();
-        let others =
-            if others.is_empty() { String::new() } else { format!(", nor do {}", others.join(", ")) };
         let why = format!(
-            "does not act{others}: the rule matches rigid bodies only, which touch by their exact surfaces, without \
-             the grid"
+            "does not act{}: the rule matches rigid bodies only, which touch by their exact surfaces, without the grid",
+            nor(others)
         );
         Some(Warning::about(format!("contact[{rule}].{first}"), why))
     };
     scene.contact.iter().enumerate().filter_map(told).collect()
+}
+
+/// Other keys that do not act either, in a sentence about the first.
+fn nor(others: &[&str]) -> String {
+    let others: Vec<String> = others.iter().map(|key| format!("`{key}`")).collect();
+    if others.is_empty() { String::new() } else { format!(", nor do {}", others.join(", ")) }
+}
+
+/// Shape functions, transfer and stress update are of bodies that deform on the grid.
+fn nothing_on_the_grid(scene: &Scene) -> Option<Warning> {
+    let mut deforming = (0..scene.bodies.len()).filter(|&body| !scene.bodies[body].is_rigid()).peekable();
+    deforming.peek()?;
+    if !deforming.all(|body| scene.interior(body) == Interior::Reference) {
+        return None;
+    }
+    let (usual, time) = (crate::scene::Time::until(1.0), &scene.time);
+    let keys = [
+        ("space.basis", scene.discretization.basis != BasisKind::default()),
+        ("time.transfer", time.transfer != usual.transfer),
+        ("time.stress_update", time.stress_update != usual.stress_update),
+        ("time.pic_share", time.pic_share != usual.pic_share),
+    ];
+    let dead: Vec<&str> = keys.iter().filter(|(_, dead)| *dead).map(|(key, _)| *key).collect();
+    let (first, others) = dead.split_first()?;
+    let why = format!(
+        "does not act{}: it is that of bodies with interior = \"grid\", and the scene has none that deform",
+        nor(others)
+    );
+    Some(Warning::about(*first, why))
+}
+
+/// A rigid body has no interior to compute.
+fn rigid_interiors(scene: &Scene) -> impl Iterator<Item = Warning> {
+    let told = |(i, body): (usize, &Body)| {
+        let of = body.interior.filter(|of| *of == Interior::Reference && body.is_rigid());
+        of.map(|_| Warning::about(format!("bodies[{i}].interior"), "does not act: the body is rigid"))
+    };
+    scene.bodies.iter().enumerate().filter_map(told)
 }
 
 /// Damping and relaxation are of bodies that deform.
@@ -118,6 +156,30 @@ mod tests {
     }
 
     #[test]
+    fn keys_of_the_grid_do_not_act_where_nothing_deforms_on_it() {
+        let told = |keys: &str, others: &str| {
+            let text = format!(
+                "space = {{ dimension = '2d', cell = 0.1, interior = 'reference' }}\n{keys}\n\
+                 materials.iron = {{ density = 1, neo_hookean = {{ young_modulus = 9, poisson_ratio = 0 }} }}\n\
+                 contact = [{{ law = 'none' }}]\n\
+                 [[bodies]]\nname = 'a'\nmaterial = 'iron'\nshape.ball = {{ center = [0, 0], radius = 1 }}\n\
+                 [[bodies]]\nname = 'b'\nmaterial = 'iron'\nshape.ball = {{ center = [3, 0], radius = 1 }}\n{others}"
+            );
+            let scene = crate::scene::parse("dead.toml", &text, &[]).expect("a scene").scene;
+            super::warnings(&scene).map(|warning| warning.to_string()).collect::<Vec<_>>()
+        };
+        let time = "time = { end = 1, transfer = 'flip', stress_update = 'last', pic_share = 0.1 }";
+        let found = told(time, "");
+        let why = "time.transfer: does not act, nor do `time.stress_update`, `time.pic_share`: it is that of bodies \
+                   with interior = \"grid\", and the scene has none that deform";
+        assert_eq!(found, [why]);
+        assert_eq!(told(time, "interior = 'grid'"), [""; 0]);
+        assert_eq!(told("time = { end = 1, transfer = 'rflip' }", ""), [""; 0]);
+        let found = told("time.end = 1", "interior = 'reference'\nrigid = {}");
+        assert_eq!(found, ["bodies[1].interior: does not act: the body is rigid"]);
+    }
+
+    #[test]
     fn what_acts_on_no_body_is_told_of() {
         for (rest, said) in [
             ("damping.viscous = 3", "damping: does not act: it is that of bodies that deform"),
@@ -139,6 +201,7 @@ mod tests {
         }
         for rest in [
             "contact = [{ friction = 0.3 }]",
+            "time = { end = 1, transfer = 'apic' }",
             "time = { end = 1, energy_drift = 0.2 }\nhealth.energy.bound = 0.3",
             "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3, limit = 2 } }]",
             "gravity = [0, -9.81]",

@@ -32,14 +32,7 @@ pub struct LoadReport {
 /// A load on a body that is not there or is rigid, or on a part where its body has nothing; one that needs a surface or
 /// a volume on the other; a value that is no number at the start.
 pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
-    let (mut supports, mut loads) = (0, 0);
-    let mut keys = Vec::new();
-    for load in &scene.loads {
-        let (kind, number) =
-            if load.is_support() { ("supports", &mut supports) } else { ("loads", &mut loads) };
-        keys.push(format!("{kind}[{number}]"));
-        *number += 1;
-    }
+    let keys = keys(scene);
     let mut heated = HashSet::new();
     for (load, key) in scene.loads.iter().zip(&keys) {
         if matches!(load.action, Action::Temperature(_)) && !heated.insert(load.body) {
@@ -56,6 +49,18 @@ pub(super) fn check(scene: &Scene) -> Result<Vec<LoadReport>, Problem> {
     // Collected before the first problem is taken, so that it is the first in the scene and not the first in time.
     let all: Vec<_> = scene.loads.par_iter().zip(&keys).map(|(load, key)| report(scene, load, key)).collect();
     all.into_iter().collect()
+}
+
+/// The table of the file that each stands for.
+pub(super) fn keys(scene: &Scene) -> Vec<String> {
+    let (mut supports, mut loads) = (0, 0);
+    let key = |load: &Load| {
+        let (kind, number) =
+            if load.is_support() { ("supports", &mut supports) } else { ("loads", &mut loads) };
+        *number += 1;
+        format!("{kind}[{}]", *number - 1)
+    };
+    scene.loads.iter().map(key).collect()
 }
 
 /// How far the displacement of a support is from none at the start, at most over its points [m].

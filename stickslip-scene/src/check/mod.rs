@@ -23,6 +23,7 @@ mod periodic;
 mod precision;
 mod press_fit;
 mod pulses;
+mod reference;
 mod report;
 mod rigid_pairs;
 mod rules;
@@ -52,7 +53,8 @@ use crate::scene::{Problem, Scene};
 ///
 /// # Errors
 /// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion
-/// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, a body outside
+/// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, what bodies with
+/// interior = "reference" cannot have, a body outside
 /// the domain, one that a periodic domain cannot hold, two bodies in one place, a free rigid body without an end, a
 /// joint far from its bodies, a stress that no deformation gives, a load on nothing, a spring at nothing.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
@@ -64,6 +66,7 @@ fn examine(scene: &Scene) -> Result<(Vec<bodies::FillingExtent>, Vec<LoadReport>
     settings::check(scene)?;
     shapes::check(scene)?;
     measurements::check(scene)?;
+    reference::check(scene)?;
     let extents = bodies::measure(scene)?;
     bodies::check_domain(scene, &extents)?;
     periodic::check(scene, &extents)?;

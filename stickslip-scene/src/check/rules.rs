@@ -1,9 +1,10 @@
 //! Which contact rule holds between which bodies, and rules that never do.
 
 use super::neighbours::pairs_within;
+use super::table::short;
 use super::warning::Warning;
 use crate::geometry::Bounds;
-use crate::scene::{ContactLaw, ContactRule, RuleNames, Scene};
+use crate::scene::{ContactLaw, ContactRule, FrictionMemory, RuleNames, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,6 +23,9 @@ pub struct RuleReport {
     pub friction: f64,
     /// Coefficient of friction of surfaces that slip fast.
     pub kinetic_friction: f64,
+    /// How friction follows a change of pressure; `None`: at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_memory: Option<FrictionMemory>,
     /// Whether the rule says what its friction is; without, it is 0.
     pub friction_given: bool,
     /// Names of two bodies each, in the order of the scene.
@@ -46,9 +50,15 @@ impl RuleReport {
             _ if !self.rubs() => "-".into(),
             None => "0, as no rule names the pair: the default rule holds".into(),
             Some(rule) if !self.friction_given => format!("0, as contact[{rule}] gives none"),
-            Some(rule) if rest == slip => format!("{rest}, by contact[{rule}]"),
-            Some(rule) => format!("{rest}, slipping {slip}, by contact[{rule}]"),
+            Some(rule) if rest == slip => format!("{rest}{}, by contact[{rule}]", self.memory()),
+            Some(rule) => format!("{rest}, slipping {slip}{}, by contact[{rule}]", self.memory()),
         }
+    }
+
+    /// How friction follows a change of pressure, if not at once.
+    fn memory(&self) -> String {
+        let Some(FrictionMemory { length, speed }) = self.friction_memory else { return String::new() };
+        format!(", with a memory of {} m and {} m/s", short(length), short(speed))
     }
 }
 
@@ -65,9 +75,10 @@ pub(super) fn rule_reports(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
     for [a, b] in pairs.into_iter().filter(|&pair| scene.may_touch(pair, &joined)) {
         let rule = names.rule(names.class(a), names.class(b));
         let report = reports.entry(rule.unwrap_or(usize::MAX)).or_insert_with(|| {
-            let ContactRule { law, friction, kinetic_friction, friction_given, .. } =
+            let ContactRule { law, friction, kinetic_friction, friction_memory, friction_given, .. } =
                 rule.map_or_else(ContactRule::default, |rule| scene.contact[rule].clone());
-            RuleReport { rule, law, friction, kinetic_friction, friction_given, pairs: Vec::new() }
+            let pairs = Vec::new();
+            RuleReport { rule, law, friction, kinetic_friction, friction_memory, friction_given, pairs }
         });
         report.pairs.push([a, b].map(|body| scene.bodies[body].name.clone()));
     }

@@ -108,11 +108,14 @@ fn check_material(key: &str, material: &NamedMaterial, scene: &Scene) -> Result<
     ))
 }
 
+/// Whether a material's law takes all particles of a body at once.
+pub(super) fn is_over_arrays(material: &NamedMaterial) -> bool {
+    matches!(material.law, Material::Custom(custom) if custom.law().over_arrays().is_some())
+}
+
 /// A law over arrays has no thickness to look for.
 fn check_arrays(key: &str, material: &NamedMaterial, dimension: Dimension) -> Result<(), Problem> {
-    let over_arrays =
-        matches!(material.law, Material::Custom(custom) if custom.law().over_arrays().is_some());
-    if dimension == Dimension::PlaneStress && over_arrays {
+    if dimension == Dimension::PlaneStress && is_over_arrays(material) {
         let found = format!("a law over arrays in plane stress, of the material `{}`", material.name);
         let allowed = "plane-strain or 3d, or a law that takes one particle at a time";
         return Err(problem(&format!("{key}.{}", material.law.name()), found, allowed));

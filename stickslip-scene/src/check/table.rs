@@ -248,7 +248,7 @@ mod tests {
     use crate::check::MachineSpeed;
     use crate::check::tests::{at_rest, free, incline, report, scene};
     use crate::geometry::Shape;
-    use crate::scene::{ContactRule, Dimension};
+    use crate::scene::{Body, ContactRule, Dimension, FrictionMemory, Interior};
 
     #[test]
     fn the_incline_reads_like_this() {
@@ -333,6 +333,21 @@ mod tests {
         }
         let many = said(20);
         assert!(many.contains("\ndisk 1 and disk 2, 17 more pairs  surface     0, as no rule"), "{many}");
+    }
+
+    #[test]
+    fn a_memory_of_friction_stands_in_the_row_of_its_rule() {
+        let disk = |i: usize| {
+            let shape = Shape::Ball { center: [i as f64, 0.0, 0.0], radius: 0.5 };
+            Body { interior: Some(Interior::Reference), ..free(&format!("disk {i}"), 0, shape) }
+        };
+        let mut scene = scene(Dimension::PlaneStrain, 0.05, (0..2).map(disk).collect());
+        let friction_memory = Some(FrictionMemory { length: 1e-4, speed: 0.01 });
+        scene.contact = vec![ContactRule { friction_memory, ..ContactRule::default().with_friction(0.3) }];
+        let text = report(&scene).expect("no problem").to_string();
+        let row =
+            "\ndisk 0 and disk 1  surface     0.3, with a memory of 1.000e-4 m and 0.01 m/s, by contact[0]\n";
+        assert!(text.contains(row), "{text}");
     }
 
     #[test]

@@ -6,9 +6,9 @@
 
 use super::{
     BasisKind, Body, BodyList, BodyMotion, ContactLaw, ContactRule, Damping, Dimension, Discretization,
-    Domain, Expression, Face, FreeRigid, Gravity, Health, Leaving, Measurements, NamedMaterial, Normal,
-    Outputs, Precision, Problem, Relaxation, Scene, SeriesFormat, SnapshotContent, StressUpdate, Time,
-    Transfer, VolumeChange,
+    Domain, Expression, Face, FreeRigid, Gravity, Health, Interior, Leaving, Measurements, NamedMaterial,
+    Normal, Outputs, Precision, Problem, Relaxation, Scene, SeriesFormat, SnapshotContent, StressUpdate,
+    Time, Transfer, VolumeChange,
 };
 use crate::geometry::{Arrangement, Shape};
 use crate::material::LAWS;
@@ -68,7 +68,12 @@ impl Scene {
 impl Discretization {
     /// Cells of this side [m].
     pub fn new(cell: f64) -> Self {
-        Discretization { cell, particles_per_side: 2, basis: BasisKind::default() }
+        Discretization {
+            cell,
+            particles_per_side: 2,
+            basis: BasisKind::default(),
+            interior: Interior::default(),
+        }
     }
 }
 
@@ -202,6 +207,7 @@ impl Body {
             shape,
             particles: Arrangement::default(),
             particles_per_side: None,
+            interior: None,
             motion: BodyMotion::default(),
             stress: None,
             velocity_by_place: None,
@@ -274,6 +280,7 @@ impl ContactRule {
             friction_given: false,
             kinetic_friction: 0.0,
             friction_decay_speed: 0.0,
+            friction_memory: None,
             cohesion: 0.0,
             adhesion: 0.0,
             viscosity: 0.0,

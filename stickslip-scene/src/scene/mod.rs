@@ -31,7 +31,7 @@ mod suggestion;
 mod units;
 mod was_read;
 
-pub use crate::scheme::{BasisKind, Face, Transfer, VolumeChange};
+pub use crate::scheme::{BasisKind, Face, Interior, Transfer, VolumeChange};
 pub use body_list::BodyList;
 pub use course::{Change, Changes, Course, LEAST_PART, MOST_PIECES, Passing, TOLERANCE};
 pub use error::{Mistake, SceneError};
@@ -240,6 +240,14 @@ pub struct Discretization {
     pub particles_per_side: usize,
     /// Shape functions.
     pub basis: BasisKind,
+    /// Where bodies that deform and do not say so are computed.
+    #[serde(skip_serializing_if = "is_grid")]
+    pub interior: Interior,
+}
+
+/// Whether bodies are on the grid: a record of a scene does not say so.
+fn is_grid(interior: &Interior) -> bool {
+    *interior == Interior::Grid
 }
 
 /// A box that holds all material.
@@ -379,6 +387,9 @@ pub struct Body {
     pub particles: Arrangement,
     /// Particles along each side of a cell, where it has not those of the scene.
     pub particles_per_side: Option<usize>,
+    /// Where it is computed, if not where those of the scene are; see [`Scene::interior`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interior: Option<Interior>,
     /// How it moves.
     pub motion: BodyMotion,
     /// Cauchy stress before anything moves, by the place: xx, yy, zz, xy, yz, xz, tension positive [Pa]; `None`: none.
@@ -443,6 +454,9 @@ pub struct ContactRule {
     pub kinetic_friction: f64,
     /// Speed of slip over which friction falls from the one to the other [m/s]; 0: as soon as they slip.
     pub friction_decay_speed: f64,
+    /// How friction follows a change of pressure; `None`: at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_memory: Option<FrictionMemory>,
     /// Shear strength of the contact beside friction [Pa].
     pub cohesion: f64,
     /// Tensile strength of the contact [Pa].
@@ -459,6 +473,22 @@ pub struct ContactRule {
     /// How bodies that overlap at the start are pressed apart; `None`: they are not, and the overlap stays as it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub press: Option<Press>,
+}
+
+/// Friction that remembers pressure: the strength of a sliding surface follows it with a delay.
+///
+/// ```text
+/// |tau| <= mu S,   dS/dt = -(|slip speed| + V_0) / L (S - p)        Prakash and Clifton (1993)
+/// ```
+/// p: pressure, S: what of it the surface remembers [Pa]; a point that comes into contact begins with S = p. With
+/// friction that follows at once, a body that slides slowly on a stiffer one flutters at every wavelength (Ranjith and
+/// Rice 2001, J. Mech. Phys. Solids 49).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FrictionMemory {
+    /// L, the slip over which pressure is forgotten [m].
+    pub length: f64,
+    /// V_0, the speed at which surfaces forget that do not slip [m/s].
+    pub speed: f64,
 }
 
 /// An interference fit: surfaces grow from no overlap to all of it.
@@ -626,6 +656,14 @@ impl Scene {
     /// Particles of a body along each side of a cell.
     pub(crate) fn per_side(&self, body: &Body) -> f64 {
         body.particles_per_side.unwrap_or(self.discretization.particles_per_side) as f64
+    }
+
+    /// Where a body is computed: as it says, or else as the scene does. A rigid one is on the grid.
+    pub fn interior(&self, body: usize) -> Interior {
+        match &self.bodies[body] {
+            body if body.is_rigid() => Interior::Grid,
+            body => body.interior.unwrap_or(self.discretization.interior),
+        }
     }
 
     /// Pairs of rigid bodies that a joint holds together, the smaller index first: they do not touch each other.

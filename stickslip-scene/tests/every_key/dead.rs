@@ -39,11 +39,35 @@ fn keys_of_rules_whose_bodies_are_glued_or_left_alone_are_told_of() {
 }
 
 #[test]
+fn a_memory_of_no_friction_is_told_of() {
+    for (friction, law, why) in [
+        ("0", "surface", "does not act, nor does `friction_memory_speed`: the rule has no friction"),
+        ("'inf'", "surface", "does not act, nor does `friction_memory_speed`: surfaces that stick"),
+        ("0", "none", "does not act: by the law \"none\" bodies do not touch"),
+    ] {
+        let memory = "friction_memory_length = 1, friction_memory_speed = 1";
+        let rule = format!("[{{ law = '{law}', friction = {friction}, {memory} }}]");
+        let found = said(&[("contact", &rule)]);
+        assert!(found.starts_with(&format!("contact[0].friction_memory_length: {why}")), "{found}");
+        let rubs = rule.replace(&format!("friction = {friction},"), "friction = 0.5,");
+        assert_eq!(said(&[("contact", &rubs)]).is_empty(), law == "surface");
+    }
+}
+
+#[test]
 fn keys_that_need_another_beside_them_are_refused_without() {
     for (set, expected) in [
         (
             &[("contact", "[{ friction = 0.5, friction_decay_speed = 1 }]")][..],
             "contact[0].friction_decay_speed: found 1; allowed: a `kinetic_friction` beside it",
+        ),
+        (
+            &[("contact", "[{ friction = 0.5, friction_memory_length = 1 }]")],
+            "contact[0].friction_memory_length: found 1; allowed: a `friction_memory_speed` beside it",
+        ),
+        (
+            &[("contact", "[{ friction = 0.5, friction_memory_speed = 1 }]")],
+            "contact[0].friction_memory_speed: found 1; allowed: a `friction_memory_length` beside it",
         ),
         (
             &[("contact", "[{ press_time = 1 }]")],

@@ -236,6 +236,18 @@ pub const CASES: &[Cases] = &[
     },
     Cases {
         scene: PLANE,
+        with: &[
+            ("contact", RULE),
+            ("contact[0].friction_memory_length", "1 mm"),
+            ("contact[0].friction_memory_speed", "1 cm/s"),
+        ],
+        keys: &[
+            ("contact[0].friction_memory_length", "2 mm"),
+            ("contact[0].friction_memory_speed", "2 cm/s"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
         with: &[("contact", RULE), ("contact[0].law", "kinematic")],
         keys: &[("contact[0].normal", "common")],
     },

@@ -36,6 +36,21 @@ fn values_out_of_range() {
                 "\"-0.1 m\"",
                 "3:8: space.cell: found \"-0.1 m\"; allowed: a length [m] above 0, like \"0.4 m\"",
             ),
+            (
+                "\"0.1 m\"",
+                "1\ninterior = \"referense\"",
+                "4:12: space.interior: found \"referense\"; allowed: \"grid\" or \"reference\"; did you mean `reference`?",
+            ),
+            (
+                "radius = \"0.4 m\" }",
+                "radius = \"0.4 m\" }\ninterior = \"mesh\"",
+                "16:12: bodies[0].interior: found \"mesh\"; allowed: \"grid\" or \"reference\"",
+            ),
+            (
+                "radius = \"0.4 m\" }",
+                "radius = 1 }\n[[contact]]\nfriction_memory_length = 1\nfriction_memory_speed = 0",
+                "18:25: contact[0].friction_memory_speed: found 0; allowed: a velocity [m/s] above 0, like \"5 m/s\"",
+            ),
             ("\"0.1 m\"", "0", "3:8: space.cell: found 0; allowed: a length [m] above 0, like \"0.4 m\""),
             (
                 "\"0.4 m\"",

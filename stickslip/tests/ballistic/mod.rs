@@ -209,6 +209,7 @@ pub fn scene() -> Scene {
         shape: Shape::Ball { center: [0.0; 3], radius: 1.0 },
         particles: Arrangement::Lattice,
         particles_per_side: None,
+        interior: None,
         motion: BodyMotion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
         stress: None,
         velocity_by_place: None,
@@ -219,7 +220,12 @@ pub fn scene() -> Scene {
         parameters: [("speed".to_string(), Parameter::Number(2.0))].into(),
         dimension: Dimension::Space,
         precision: Precision::Double,
-        discretization: Discretization { cell: 0.1, particles_per_side: 2, basis: BasisKind::Gimp },
+        discretization: Discretization {
+            cell: 0.1,
+            particles_per_side: 2,
+            basis: BasisKind::Gimp,
+            interior: Default::default(),
+        },
         domain: None,
         time: Time {
             end: 1.0,

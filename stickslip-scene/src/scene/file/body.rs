@@ -15,7 +15,7 @@ use crate::packing::Placement;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
 use crate::scene::source::{DocumentNode, Value};
-use crate::scene::{self, BodyMotion, Domain, Expression, Face, FreeRigid, NamedMaterial};
+use crate::scene::{self, BodyMotion, Domain, Expression, Face, FreeRigid, Interior, NamedMaterial};
 use schemars::JsonSchema;
 use std::collections::HashSet;
 
@@ -42,6 +42,8 @@ table! {
         particles: Option<Word<Arrangement>>,
         /// Particles along each side of a cell, 1 to 8; by default as many as space has.
         particles_per_side: Option<Count>,
+        /// Where it is computed, if it deforms; by default as space says.
+        interior: Option<Word<Interior>>,
         /// Velocity at the start [m/s]; of a body that deforms also by the place x, y, z:
         /// velocity = [0, "1 m/s * cos(pi * y / 6 m)"]. By default none.
         velocity: Option<VectorInput<Velocity>>,
@@ -304,6 +306,7 @@ impl Body {
         if let Some(count) = &self.particles_per_side {
             body.particles_per_side = Some(count.value(context, 1..=8)?);
         }
+        body.interior = self.interior.as_ref().map(|word| word.value(context)).transpose()?;
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
         (body.motion, body.velocity_by_place) = keys.motion(context)?;
         body.stress = self.stress.as_ref().map(|stress| stress.resolve(context).map(Box::new)).transpose()?;

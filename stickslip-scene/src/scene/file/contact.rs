@@ -1,12 +1,14 @@
 //! `[[contact]]`: rules for how bodies touch.
 
 use super::Context;
-use super::quantity::{Duration, Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity};
+use super::quantity::{
+    Duration, Length, Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity,
+};
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
-use crate::scene::{Body, ContactLaw, ContactRule, NamedMaterial, Normal, Press};
+use crate::scene::{Body, ContactLaw, ContactRule, FrictionMemory, NamedMaterial, Normal, Press};
 use schemars::JsonSchema;
 use std::collections::HashSet;
 
@@ -27,6 +29,12 @@ table! {
         /// Speed of slip over which friction falls from `friction` to `kinetic_friction`; 0: as soon as they slip.
         #[schemars(extend("default" = 0))]
         friction_decay_speed: Option<QuantityInput<Velocity>>,
+        /// Slip over which friction follows a change of pressure [m], with `friction_memory_speed` beside it; between
+        /// bodies with interior = "reference". By default friction follows at once.
+        friction_memory_length: Option<QuantityInput<Length>>,
+        /// Speed at which surfaces that do not slip follow a change of pressure, as slip does [m/s]; with
+        /// `friction_memory_length`.
+        friction_memory_speed: Option<QuantityInput<Velocity>>,
         /// Shear traction that the contact bears beside friction, pressed or not, where the surfaces touch.
         #[schemars(extend("default" = 0))]
         cohesion: Option<QuantityInput<Pressure>>,
@@ -181,6 +189,7 @@ impl Contact {
             friction_given: self.friction.is_some(),
             kinetic_friction,
             friction_decay_speed: not_negative(&self.friction_decay_speed, context)?,
+            friction_memory: self.friction_memory((law, friction), context)?,
             cohesion: bond(&self.cohesion, normal, context)?,
             adhesion: bond(&self.adhesion, normal, context)?,
             viscosity: bond(&self.viscosity, normal, context)?,
@@ -191,6 +200,33 @@ impl Contact {
             })?,
             press: self.press(law, context)?,
         })
+    }
+
+    /// How friction follows a change of pressure, if not at once.
+    fn friction_memory(
+        &self,
+        (law, friction): (ContactLaw, f64),
+        context: &Context,
+    ) -> Result<Option<FrictionMemory>, Fault> {
+        let (length, speed) = match (&self.friction_memory_length, &self.friction_memory_speed) {
+            (Some(length), Some(speed)) => (length, speed),
+            (Some(length), None) => {
+                return Err(length.node().fault("a `friction_memory_speed` beside it"));
+            }
+            (None, Some(speed)) => {
+                return Err(speed.node().fault("a `friction_memory_length` beside it"));
+            }
+            (None, None) => return Ok(None),
+        };
+        let memory = FrictionMemory { length: length.positive(context)?, speed: speed.positive(context)? };
+        let why = match (law, friction) {
+            (ContactLaw::None | ContactLaw::Glued, _) => return Ok(Some(memory)),
+            (_, 0.0) => "the rule has no friction",
+            (_, f64::INFINITY) => "surfaces that stick in any case have no strength to remember",
+            _ => return Ok(Some(memory)),
+        };
+        context.tell(&length.node().key, format!("does not act, nor does `friction_memory_speed`: {why}"));
+        Ok(Some(memory))
     }
 
     /// How overlaps are pressed apart, if they are.
@@ -231,6 +267,7 @@ impl Contact {
             acts(&self.friction, context)?,
             acts(&self.kinetic_friction, context)?,
             acts(&self.friction_decay_speed, context)?,
+            acts(&self.friction_memory_length, context)?,
             acts(&self.cohesion, context)?,
             acts(&self.adhesion, context)?,
             acts(&self.viscosity, context)?,

@@ -10,7 +10,7 @@ use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VectorInput};
 use crate::geometry::{Curved, Pixels, Shape, Solids, image_parts};
 use crate::scene::error::Fault;
-use crate::scene::{self, NamedMaterial};
+use crate::scene::{self, Interior, NamedMaterial};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -43,6 +43,8 @@ table! {
         least_pixels: Option<Count>,
         /// Particles along each side of a cell, 1 to 8; by default as many as space has.
         particles_per_side: Option<Count>,
+        /// Where they are computed, if they deform; by default as space says.
+        interior: Option<Word<Interior>>,
         /// Velocity of each at the start [m/s]; by default none.
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity of each about its centre of mass at the start [rad/s]; by default none.
@@ -96,6 +98,7 @@ impl Image {
         let (motion, by_place) = keys.motion(context)?;
         let per_side =
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
+        let interior = self.interior.as_ref().map(|word| word.value(context)).transpose()?;
         let image = self.pixels(&file, context)?;
         if matches!(solids, Solids::Labels { .. }) {
             self.are_labels(&file, &image)?;
@@ -132,7 +135,7 @@ impl Image {
             let shape = Shape::from(Curved::Image(part));
             let mut body = scene::Body::new(&format!("{name} {number}"), material, shape);
             (body.particles_per_side, body.motion) = (per_side, motion.clone());
-            body.velocity_by_place = by_place.clone();
+            (body.interior, body.velocity_by_place) = (interior, by_place.clone());
             bodies.add(body, &self.name, declared)?;
         }
         Ok(())

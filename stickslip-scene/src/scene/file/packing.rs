@@ -11,7 +11,7 @@ use crate::geometry::{Arrangement, Shape, fits};
 use crate::packing::{self, Amount, MOST_GRAINS, NoPacking, Sizes};
 use crate::scene::error::Fault;
 use crate::scene::source::{DocumentNode, Value};
-use crate::scene::{self, Domain, NamedMaterial};
+use crate::scene::{self, Domain, Interior, NamedMaterial};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -50,6 +50,8 @@ table! {
         particles: Option<Word<Arrangement>>,
         /// Particles along each side of a cell, 1 to 8; by default as many as space has.
         particles_per_side: Option<Count>,
+        /// Where they are computed, if they deform; by default as space says.
+        interior: Option<Word<Interior>>,
         /// Velocity of each at the start [m/s]; by default none.
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity of each about its centre of mass at the start [rad/s]; by default none.
@@ -123,6 +125,7 @@ impl Packing {
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
         let mut body = scene::Body::new(&name, material, grain.clone());
         (body.particles, body.particles_per_side) = (fitted, per_side);
+        body.interior = self.interior.as_ref().map(|word| word.value(context)).transpose()?;
         (body.motion, body.velocity_by_place) = (motion, by_place);
         bodies.add_copies(&body, &placements, (&self.name, declared), context)
     }

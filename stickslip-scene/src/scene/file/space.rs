@@ -6,7 +6,9 @@ use super::read::table;
 use super::text::{Choice, Count, Word};
 use super::vector::VectorInput;
 use crate::scene::error::Fault;
-use crate::scene::{self, BasisKind, Compression, Dimension, Discretization, Face, Leaving, Precision};
+use crate::scene::{
+    self, BasisKind, Compression, Dimension, Discretization, Face, Interior, Leaving, Precision,
+};
 
 table! {
     /// Dimensions, cells, particles and domain.
@@ -21,6 +23,9 @@ table! {
         /// Shape functions between particles and grid.
         #[schemars(extend("default" = BasisKind::default()))]
         basis: Option<Word<BasisKind>>,
+        /// Where bodies that deform are computed; they may say so themselves.
+        #[schemars(extend("default" = Interior::default()))]
+        interior: Option<Word<Interior>>,
         /// Number format of particles and grid.
         #[schemars(extend("default" = Precision::default()))]
         precision: Option<Word<Precision>>,
@@ -84,6 +89,18 @@ impl Choice for BasisKind {
     ];
 }
 
+impl Choice for Interior {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("grid", Interior::Grid, "On the grid that all bodies share, by the material point method."),
+        (
+            "reference",
+            Interior::Reference,
+            "On a grid of its own undeformed places, by quadratic B-splines: for elastic and moderately plastic bodies \
+             that stay in one piece.",
+        ),
+    ];
+}
+
 impl Choice for Precision {
     const WORDS: &'static [(&'static str, Self, &'static str)] =
         &[("double", Precision::Double, "64-bit numbers."), ("single", Precision::Single, "32-bit numbers.")];
@@ -134,6 +151,9 @@ impl Space {
         }
         if let Some(word) = &self.basis {
             chosen.basis = word.value(context)?;
+        }
+        if let Some(word) = &self.interior {
+            chosen.interior = word.value(context)?;
         }
         Ok(chosen)
     }

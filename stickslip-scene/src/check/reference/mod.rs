@@ -1,0 +1,207 @@
+//! What bodies with interior "reference" cannot have yet.
+//!
+//! [`OF_BODY`], [`OF_SCENE`] and the table of contact rules in `contact` are the whole list, a row for each: what the
+//! engine learns is struck out there.
+
+mod contact;
+#[cfg(test)]
+mod tests;
+
+use super::bodies::smallest_extent;
+use super::loads;
+use super::settings::is_over_arrays;
+use super::table::short;
+use crate::geometry::{Curved, Shape};
+use crate::material::Material;
+use crate::scene::{Action, FACES, Face, Interior, NamedMaterial, Problem, Scene, VolumeChange};
+
+/// What a body may not have, by its number.
+const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] = &[
+    point_cloud,
+    particles_per_side,
+    thickness,
+    cells,
+    law_over_arrays,
+    damage,
+    averaged_volume,
+    initial_stress,
+    walls,
+];
+
+/// What a scene may not have in which there is one, by the number of the first.
+const OF_SCENE: &[fn(&Scene, usize) -> Option<Problem>] =
+    &[periodic_faces, bulk_viscosity, relaxation, temperatures, springs, joints];
+
+/// Particles along each side of a cell.
+const PER_SIDE: f64 = 2.0;
+
+/// Cells that a body has across, at least: its outer nodes follow those inside.
+const THINNEST: f64 = 2.0;
+
+/// Cells by which its grid reaches beyond it on every side.
+const MARGIN: f64 = 2.0;
+
+/// Cells that its grid has at most.
+const MOST_CELLS: f64 = (1_u64 << 31) as f64;
+
+/// What lies nearer to a face of the domain reaches it [cells].
+const ROUND_OFF: f64 = 1e-9;
+
+/// # Errors
+/// The first thing that bodies with interior "reference" cannot have. Shapes without bounds are refused before, for all
+/// bodies that deform.
+pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
+    let mut bodies = (0..scene.bodies.len()).filter(|&body| is_reference(scene, body)).peekable();
+    let found = bodies.peek().and_then(|&first| OF_SCENE.iter().find_map(|row| row(scene, first)));
+    let found = found.or_else(|| bodies.find_map(|body| OF_BODY.iter().find_map(|row| row(scene, body))));
+    found.map_or_else(|| contact::check(scene), Err)
+}
+
+/// Whether there is a body of that number, with that interior.
+fn is_reference(scene: &Scene, body: usize) -> bool {
+    body < scene.bodies.len() && scene.interior(body) == Interior::Reference
+}
+
+/// The key that gives a body its interior.
+fn interior_key(scene: &Scene, body: usize) -> String {
+    match scene.bodies[body].interior {
+        Some(_) => format!("bodies[{body}].interior"),
+        None => "space.interior".to_string(),
+    }
+}
+
+/// What a body cannot have, and what it may have without changing its interior.
+fn problem(scene: &Scene, body: usize, key: String, found: &str, allowed: &str) -> Problem {
+    let name = &scene.bodies[body].name;
+    Problem {
+        key,
+        found: format!("{found}, where `{name}` has interior = \"reference\""),
+        allowed: format!("{allowed}; or interior = \"grid\" for `{name}`"),
+        help: None,
+    }
+}
+
+fn point_cloud(scene: &Scene, body: usize) -> Option<Problem> {
+    let Shape::Curved(Curved::PointCloud(_)) = &scene.bodies[body].shape else { return None };
+    let problem = problem(scene, body, interior_key(scene, body), "a body of a point cloud", "");
+    // Tables of point clouds have no such key.
+    let allowed = "interior = \"grid\" in [space], and \"reference\" for other bodies";
+    Some(Problem { allowed: allowed.to_string(), ..problem })
+}
+
+fn particles_per_side(scene: &Scene, body: usize) -> Option<Problem> {
+    let found = scene.per_side(&scene.bodies[body]);
+    let key = match scene.bodies[body].particles_per_side {
+        Some(_) => format!("bodies[{body}].particles_per_side"),
+        None => "space.particles_per_side".to_string(),
+    };
+    (found != PER_SIDE).then(|| problem(scene, body, key, &found.to_string(), "2, the default"))
+}
+
+fn thickness(scene: &Scene, body: usize) -> Option<Problem> {
+    let least = THINNEST * scene.discretization.cell;
+    let extent = smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
+    // A shape in which nothing is has a problem of its own.
+    let is_thin = extent > 0.0 && extent < least * (1.0 - ROUND_OFF);
+    let found = format!("a shape {} m across", short(extent));
+    let allowed = format!("at least {THINNEST} cells, {} m", short(least));
+    is_thin.then(|| problem(scene, body, format!("bodies[{body}].shape"), &found, &allowed))
+}
+
+fn cells(scene: &Scene, body: usize) -> Option<Problem> {
+    let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
+    let bounds = scene.bodies[body].shape.bounds(axes)?.grown(MARGIN * cell);
+    let cells: f64 = bounds.size()[..axes].iter().map(|side| (side / cell).ceil()).product();
+    let found = format!("{cells:.1e} cells of {} m in the box round a body", short(cell));
+    let allowed = format!("at most {MOST_CELLS:.1e}");
+    (cells > MOST_CELLS).then(|| problem(scene, body, "space.cell".to_string(), &found, &allowed))
+}
+
+fn law_over_arrays(scene: &Scene, body: usize) -> Option<Problem> {
+    let allowed = "a law that takes one particle at a time";
+    is_over_arrays(material(scene, body))
+        .then(|| problem(scene, body, law_key(scene, body), "a law over arrays", allowed))
+}
+
+fn damage(scene: &Scene, body: usize) -> Option<Problem> {
+    let allowed = "a law that leaves material in one piece";
+    matches!(material(scene, body).law, Material::Damage(_))
+        .then(|| problem(scene, body, law_key(scene, body), "a law by which material parts", allowed))
+}
+
+fn averaged_volume(scene: &Scene, body: usize) -> Option<Problem> {
+    let key = format!("materials.{}.volume_change", material(scene, body).name);
+    (material(scene, body).volume_change == VolumeChange::Averaged)
+        .then(|| problem(scene, body, key, "\"averaged\"", "\"own\", the default"))
+}
+
+fn material(scene: &Scene, body: usize) -> &NamedMaterial {
+    &scene.materials[scene.bodies[body].material]
+}
+
+fn law_key(scene: &Scene, body: usize) -> String {
+    let material = material(scene, body);
+    format!("materials.{}.{}", material.name, material.law.name())
+}
+
+fn initial_stress(scene: &Scene, body: usize) -> Option<Problem> {
+    scene.bodies[body].stress.as_ref()?;
+    Some(problem(scene, body, format!("bodies[{body}].stress"), "a stress at the start", "none"))
+}
+
+fn walls(scene: &Scene, body: usize) -> Option<Problem> {
+    let (axes, near) = (scene.dimension.axes(), ROUND_OFF * scene.discretization.cell);
+    let (domain, bounds) = (scene.domain.as_ref()?, scene.bodies[body].shape.bounds(axes)?);
+    let sides = (0..axes).flat_map(|k| {
+        let beyond = [domain.min[k] - bounds.min[k], bounds.max[k] - domain.max[k]];
+        (0..2).map(move |side| (domain.faces[k][side], FACES[k][side], beyond[side]))
+    });
+    let mut walls = sides.filter(|(face, ..)| matches!(face, Face::Symmetry | Face::Fixed));
+    let (_, name, _) = walls.find(|(.., beyond)| *beyond >= -near)?;
+    let found = format!("a body that reaches the face `{name}` of the domain");
+    let allowed = format!("room between the two, or {name} = \"open\"");
+    Some(problem(scene, body, format!("bodies[{body}].shape"), &found, &allowed))
+}
+
+fn periodic_faces(scene: &Scene, body: usize) -> Option<Problem> {
+    let domain = scene.domain.as_ref()?;
+    let axis = (0..scene.dimension.axes()).find(|&k| domain.is_periodic(k))?;
+    let key = format!("space.domain.{}", FACES[axis][0]);
+    Some(problem(scene, body, key, "\"periodic\"", "other faces"))
+}
+
+fn bulk_viscosity(scene: &Scene, body: usize) -> Option<Problem> {
+    let mut keys = ["bulk_linear", "bulk_quadratic"].into_iter().zip(scene.damping.bulk);
+    let (key, value) = keys.find(|(_, value)| *value != 0.0)?;
+    Some(problem(scene, body, format!("damping.{key}"), &value.to_string(), "0, the default"))
+}
+
+fn relaxation(scene: &Scene, body: usize) -> Option<Problem> {
+    scene.time.relax?;
+    let allowed = "none; `viscous` of [damping] brings bodies to rest in a run";
+    Some(problem(scene, body, "time.relax".to_string(), "dynamic relaxation", allowed))
+}
+
+fn temperatures(scene: &Scene, _: usize) -> Option<Problem> {
+    let mut warm = scene.loads.iter().zip(loads::keys(scene));
+    let (load, key) = warm
+        .find(|(load, _)| matches!(load.action, Action::Temperature(_)) && is_reference(scene, load.body))?;
+    Some(problem(scene, load.body, format!("{key}.temperature"), "a temperature", "none"))
+}
+
+fn springs(scene: &Scene, _: usize) -> Option<Problem> {
+    let mut ends = scene.springs.iter().enumerate().flat_map(|(i, spring)| {
+        ["from", "to"].into_iter().zip(&spring.ends).map(move |(key, end)| (i, key, end.body))
+    });
+    let (i, key, body) = ends.find(|&(.., body)| is_reference(scene, body))?;
+    Some(problem(scene, body, format!("springs[{i}].{key}.body"), "a spring", "other bodies"))
+}
+
+fn joints(scene: &Scene, _: usize) -> Option<Problem> {
+    let mut ends = scene.joints.iter().enumerate().flat_map(|(i, joint)| {
+        let ends = [("body", Some(joint.body)), ("to", joint.to)];
+        ends.into_iter().filter_map(move |(key, body)| Some((i, key, body?)))
+    });
+    let (i, key, body) = ends.find(|&(.., body)| is_reference(scene, body))?;
+    Some(problem(scene, body, format!("joints[{i}].{key}"), "a joint", "rigid bodies"))
+}

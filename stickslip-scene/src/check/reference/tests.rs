@@ -1,0 +1,336 @@
+//! Each refusal with its key, what was found and what is allowed, and what is next to it and allowed.
+
+use super::*;
+use crate::check::problems;
+use crate::material::{CustomLaw, Isotropic, LawArrays, LawOverArrays, Motion};
+use crate::outside::OutsideFault;
+use crate::scene::{ContactRule, parse_beside};
+use crate::tensor::{Matrix, Symmetric};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// A disk on its undeformed places, one on the grid, and a plate that moves as prescribed.
+const BODIES: &str = r#"
+[space]
+dimension = "plane-strain"
+cell = 0.1
+[time]
+end = 1
+[materials.rubber]
+density = 1000
+thermal_expansion = 1e-5
+neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 }
+[[bodies]]
+name = "a"
+material = "rubber"
+shape.ball = { center = [0, 0], radius = 0.5 }
+interior = "reference"
+[[bodies]]
+name = "b"
+material = "rubber"
+shape.ball = { center = [2, 0], radius = 0.5 }
+[[bodies]]
+name = "plate"
+material = "rubber"
+shape.box = { min = [-1, -2], max = [3, -1] }
+rigid = {}
+"#;
+
+/// They do not touch.
+const APART: &str = "contact = [{ law = 'none' }]";
+
+const GLASS: &str = "{ density = 1, damage = { tensile_strength = 1e4, fracture_energy = 900, \
+                     young_modulus = 1e6, poisson_ratio = 0.2 } }";
+
+const WALLS: &str = "{ min = [-0.5, -2], max = [3, 2], x_min = 'WORD' }";
+
+/// The scene with these tables above it, and these keys set.
+fn scene(top: &str, set: &[(&str, &str)]) -> Scene {
+    let cloud: String = (0..64).map(|n| format!("{},{},1\n", n % 8, n / 8)).collect();
+    let files = BTreeMap::from([(PathBuf::from("cloud.csv"), format!("x,y,volume\n{cloud}").into_bytes())]);
+    let set: Vec<_> = set.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    let text = format!("{top}\n{BODIES}");
+    parse_beside("a.toml", &text, &set, &files).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+fn refused(scene: &Scene) -> String {
+    problems(scene).expect_err("a problem").to_string()
+}
+
+#[test]
+fn what_a_body_on_the_grid_may_have_is_refused() {
+    let of_a = "where `a` has interior = \"reference\"; allowed: ";
+    let [cut, fixed, periodic] =
+        ["symmetry", "fixed", "periodic', x_max = 'periodic"].map(|word| WALLS.replace("WORD", word));
+    for (top, set, key, found, allowed) in [
+        (
+            APART,
+            &[("bodies[0].particles_per_side", "3")][..],
+            "bodies[0].particles_per_side",
+            "3",
+            "2, the default",
+        ),
+        (APART, &[("space.particles_per_side", "1")], "space.particles_per_side", "1", "2, the default"),
+        (
+            APART,
+            &[("bodies[0].shape", "{ box = { min = [0, 0], max = [1, 0.19] } }")],
+            "bodies[0].shape",
+            "a shape 0.19 m across",
+            "at least 2 cells, 0.2 m",
+        ),
+        (
+            APART,
+            &[("bodies[0].shape.ball.radius", "2400"), ("bodies[0].shape.ball.center", "[9000, 0]")],
+            "space.cell",
+            "2.3e9 cells of 0.1 m in the box round a body",
+            "at most 2.1e9",
+        ),
+        (
+            APART,
+            &[("materials.glass", GLASS), ("bodies[0].material", "glass")],
+            "materials.glass.damage",
+            "a law by which material parts",
+            "a law that leaves material in one piece",
+        ),
+        (
+            APART,
+            &[("materials.rubber.volume_change", "averaged")],
+            "materials.rubber.volume_change",
+            "\"averaged\"",
+            "\"own\", the default",
+        ),
+        (APART, &[("bodies[0].stress", "{ xx = 1 }")], "bodies[0].stress", "a stress at the start", "none"),
+        (
+            APART,
+            &[("space.domain", cut.as_str())],
+            "bodies[0].shape",
+            "a body that reaches the face `x_min` of the domain",
+            "room between the two, or x_min = \"open\"",
+        ),
+        (
+            APART,
+            &[("space.domain", &fixed)],
+            "bodies[0].shape",
+            "a body that reaches the face `x_min` of the domain",
+            "room between the two, or x_min = \"open\"",
+        ),
+        (
+            APART,
+            &[("space.domain", &periodic), ("space.domain.max", "[3.5, 2]")],
+            "space.domain.x_min",
+            "\"periodic\"",
+            "other faces",
+        ),
+        (APART, &[("damping.bulk_linear", "0.06")], "damping.bulk_linear", "0.06", "0, the default"),
+        (APART, &[("damping.bulk_quadratic", "1.5")], "damping.bulk_quadratic", "1.5", "0, the default"),
+        (
+            APART,
+            &[("time.relax", "{}")],
+            "time.relax",
+            "dynamic relaxation",
+            "none; `viscous` of [damping] brings bodies to rest in a run",
+        ),
+        (
+            "contact = [{ law = 'none' }]\nloads = [{ body = 'b', force = [1, 0] }, { body = 'a', temperature = 20 }]",
+            &[],
+            "loads[1].temperature",
+            "a temperature",
+            "none",
+        ),
+        (
+            "contact = [{ law = 'none' }]\nsprings = [{ from.body = 'b', to.body = 'a', stiffness = 1 }]",
+            &[],
+            "springs[0].to.body",
+            "a spring",
+            "other bodies",
+        ),
+    ] {
+        let expected = format!("{key}: {found}, {of_a}{allowed}; or interior = \"grid\" for `a`");
+        assert_eq!(refused(&scene(top, set)), expected);
+        // A body on the grid may have it, however it comes to be there.
+        let grid: Vec<_> = set.iter().copied().chain([("bodies[0].interior", "grid")]).collect();
+        let found = problems(&scene(top, &grid)).map_err(|problem| problem.to_string());
+        assert!(found.as_ref().map_or_else(|text| !text.contains("interior"), |()| true), "{found:?}");
+    }
+}
+
+#[test]
+fn refusals_point_to_the_line() {
+    let text = format!("{APART}\n{BODIES}").replace("interior =", "particles_per_side = 3\ninterior =");
+    let loaded = crate::scene::parse("a.toml", &text, &[]).expect("a scene");
+    let error = loaded.source.locate(problems(&loaded.scene).expect_err("3 a side")).to_string();
+    assert!(
+        error.starts_with("a.toml:16:22: bodies[0].particles_per_side: found 3, where `a` has "),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_point_cloud_has_no_undeformed_places() {
+    let cloud = "contact = [{ law = 'none' }]\n\
+                 point_clouds = [{ name = 'c', material = 'rubber', file = 'cloud.csv', unit = 0.05 }]";
+    let away = ("bodies[0].shape.ball.center", "[0, 9]");
+    assert_eq!(problems(&scene(cloud, &[away])), Ok(()));
+    let problem = problems(&scene(cloud, &[away, ("space.interior", "reference")])).expect_err("a cloud");
+    assert_eq!(problem.key, "space.interior");
+    assert!(problem.found.starts_with("a body of a point cloud, where `c"), "{problem}");
+    assert_eq!(problem.allowed, "interior = \"grid\" in [space], and \"reference\" for other bodies");
+}
+
+#[derive(Debug)]
+struct OverArrays;
+
+impl LawOverArrays for OverArrays {
+    fn respond(&self, _: LawArrays<'_>) -> Result<(), OutsideFault> {
+        Ok(())
+    }
+}
+
+impl CustomLaw for OverArrays {
+    fn name(&self) -> &'static str {
+        "arrays"
+    }
+
+    fn over_arrays(&self) -> Option<&dyn LawOverArrays> {
+        Some(self)
+    }
+
+    fn elastic(&self) -> Isotropic<f64> {
+        Isotropic { bulk_modulus: 1e6, shear_modulus: 1e6 }
+    }
+
+    fn respond(&self, _: &Motion<f64>, _: &mut [f64]) -> Symmetric<f64> {
+        Symmetric::isotropic(0.0)
+    }
+
+    fn strain_energy(&self, _: &Matrix<f64>, _: &Symmetric<f64>, _: &[f64]) -> f64 {
+        0.0
+    }
+}
+
+#[test]
+fn laws_over_arrays_are_refused() {
+    let mut scene = scene(APART, &[]);
+    scene.materials[0].law = Material::custom(&OverArrays);
+    let problem = problems(&scene).expect_err("a law over arrays");
+    assert_eq!(problem.key, "materials.rubber.arrays");
+    assert!(problem.found.starts_with("a law over arrays, where `a` has "), "{problem}");
+    assert!(problem.allowed.starts_with("a law that takes one particle at a time; or "), "{problem}");
+    scene.bodies[0].interior = None;
+    assert_eq!(problems(&scene), Ok(()));
+}
+
+/// Files name rigid bodies in joints; scenes in code may name others.
+#[test]
+fn joints_of_such_bodies_are_refused() {
+    let joint = "contact = [{ law = 'none' }]\njoints = [{ body = 'b', weld = {} }]";
+    let mut scene = scene(joint, &[("bodies[1].rigid", "{ free = {} }")]);
+    assert_eq!(problems(&scene), Ok(()));
+    scene.joints[0].to = Some(0);
+    let expected = "joints[0].to: a joint, where `a` has interior = \"reference\"; allowed: rigid bodies; or \
+                    interior = \"grid\" for `a`";
+    assert_eq!(refused(&scene), expected);
+}
+
+#[test]
+fn rigid_bodies_have_no_interior() {
+    let rigid = scene(APART, &[("space.interior", "reference"), ("bodies[0].rigid", "{}")]);
+    assert_eq!(
+        [0, 1, 2].map(|body| rigid.interior(body)),
+        [Interior::Grid, Interior::Reference, Interior::Grid]
+    );
+    let own = scene(APART, &[("space.interior", "reference"), ("bodies[0].interior", "grid")]);
+    assert_eq!([0, 1].map(|body| own.interior(body)), [Interior::Grid, Interior::Reference]);
+}
+
+#[test]
+fn such_bodies_meet_each_other_and_what_moves_as_prescribed() {
+    let both = ("bodies[1].interior", "reference");
+    assert_eq!(problems(&scene("", &[both])), Ok(()));
+    assert_eq!(problems(&scene("contact = [{ friction = 0.5 }]", &[both])), Ok(()));
+    assert_eq!(problems(&scene(APART, &[])), Ok(()));
+    let meet =
+        "bodies with interior \"reference\" meet each other, and rigid bodies whose motion is prescribed: ";
+    for (top, set, expected) in [
+        (
+            "",
+            &[][..],
+            format!(
+                "bodies[0].interior: \"reference\" of `a`, which may touch `b`, as no rule names the pair, and \
+                 that has interior = \"grid\"; allowed: {meet}interior = \"reference\" for `b` too, or \
+                 \"grid\" for both"
+            ),
+        ),
+        (
+            "contact = [{ friction = 0.5 }]",
+            &[("space.interior", "reference"), ("bodies[1].interior", "grid")],
+            format!(
+                "bodies[0].interior: \"reference\" of `a`, which may touch `b`, by contact[0], and that has \
+                 interior = \"grid\"; allowed: {meet}interior = \"reference\" for `b` too, or \"grid\" for both"
+            ),
+        ),
+        (
+            "",
+            &[
+                ("space.interior", "reference"),
+                ("bodies[0].rigid", "{ free = {} }"),
+                ("bodies[0].interior", "grid"),
+            ],
+            format!(
+                "space.interior: \"reference\" of `b`, which may touch `a`, as no rule names the pair, and that is \
+                 rigid and free; allowed: {meet}interior = \"grid\" for `b`"
+            ),
+        ),
+    ] {
+        assert_eq!(refused(&scene(top, set)), expected);
+    }
+}
+
+#[test]
+fn rules_of_such_bodies_say_no_more_than_friction() {
+    for (rule, key, found, allowed) in [
+        ("law = 'gap'", "law", "\"gap\"", "\"surface\", the default, or \"none\""),
+        ("law = 'glued'", "law", "\"glued\"", "\"surface\", the default, or \"none\""),
+        ("cohesion = 2", "cohesion", "2", "0, the default"),
+        ("adhesion = 2", "adhesion", "2", "0, the default"),
+        ("viscosity = 2", "viscosity", "2", "0, the default"),
+        ("restitution = 0.5", "restitution", "0.5", "0, the default"),
+        ("overlap = 'press'", "overlap", "\"press\"", "\"kept\", the default"),
+    ] {
+        for (names, other, grid) in [("['a', 'b']", "b", "both"), ("['a', 'plate']", "plate", "`a`")] {
+            let top = format!("contact = [{{ between = {names}, {rule} }}]");
+            let found = format!("{found} between `a` and `{other}`, where `a` has interior = \"reference\"");
+            let expected =
+                format!("contact[0].{key}: {found}; allowed: {allowed}; or interior = \"grid\" for {grid}");
+            assert_eq!(refused(&scene(&top, &[("space.interior", "reference")])), expected);
+            assert_eq!(problems(&scene(&top, &[("bodies[0].interior", "grid")])), Ok(()), "{top}");
+        }
+    }
+}
+
+#[test]
+fn friction_remembers_pressure_on_such_bodies_only() {
+    let memory = |between: &str| {
+        let keys = "friction = 0.5, friction_memory_length = 1e-4, friction_memory_speed = 0.01";
+        format!("contact = [{{ between = {between}, {keys} }}, {{ law = 'none' }}]")
+    };
+    assert_eq!(problems(&scene(&memory("['a', 'plate']"), &[])), Ok(()));
+    assert_eq!(problems(&scene(&memory("['a', 'b']"), &[("bodies[1].interior", "reference")])), Ok(()));
+    for between in ["['b', 'plate']", "['b', 'any']"] {
+        let grid = refused(&scene(&memory(between), &[("bodies[0].interior", "grid")]));
+        let start = "contact[0].friction_memory_length: a memory of friction between `";
+        let end = "allowed: one between bodies with interior = \"reference\", or such a body and a rigid one";
+        assert!(grid.starts_with(start) && grid.ends_with(end), "{grid}");
+    }
+}
+
+#[test]
+fn many_grains_take_no_longer_than_few() {
+    let mut scene = scene("", &[("bodies[1].interior", "reference")]);
+    let grain = scene.bodies[0].clone();
+    let copies = (0..20_000).map(|i| crate::scene::Body { name: format!("grain {i}"), ..grain.clone() });
+    scene.bodies.extend(copies);
+    assert_eq!(check(&scene), Ok(()));
+    scene.contact.push(ContactRule { viscosity: 1.0, ..ContactRule::default() });
+    assert_eq!(check(&scene).expect_err("viscosity").key, "contact[0].viscosity");
+}
