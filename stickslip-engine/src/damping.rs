@@ -31,6 +31,11 @@ impl<T: Real> NodeDamping<T> {
         NodeDamping { viscous: self.viscous + rate, ..self }
     }
 
+    /// The same in double precision.
+    pub fn double(&self) -> NodeDamping<f64> {
+        NodeDamping { viscous: self.viscous.f64(), local: self.local.f64() }
+    }
+
     /// Whether it does anything.
     pub fn acts(&self) -> bool {
         self.viscous > T::ZERO || self.local > T::ZERO

@@ -25,7 +25,7 @@ const AT_A_TIME: usize = 1 << 16;
 pub fn check(scene: &Scene, number: usize) -> Result<(), Problem> {
     let body = &scene.bodies[number];
     let Some(formulas) = &body.stress else { return Ok(()) };
-    let all = sites(&body.shape, &scene.lattice(body), body.particles);
+    let all = sites(&body.shape, &scene.lattice(body), scene.arrangement(body));
     let mut places = all.into_iter().flatten().map(|site| site.position);
     let alike = formulas.iter().all(|formula| formula.constant().is_some());
     loop {

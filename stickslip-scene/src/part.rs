@@ -93,7 +93,7 @@ impl PartPoints {
 /// Shows the points of a part of a body one after the other, by their numbers; none where it has nothing there.
 pub fn visit(scene: &Scene, body: usize, part: &Part, look: &mut dyn FnMut(PartPoint)) {
     let body = &scene.bodies[body];
-    let Some(particles) = sites(&body.shape, &scene.lattice(body), body.particles) else { return };
+    let Some(particles) = sites(&body.shape, &scene.lattice(body), scene.arrangement(body)) else { return };
     let mut number = 0;
     let mut show = |point: PartPoint| {
         look(PartPoint { number, ..point });

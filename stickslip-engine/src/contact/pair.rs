@@ -193,6 +193,7 @@ pub(super) mod tests {
             friction: Friction::coulomb(friction),
             max_strain: 0.5,
             restitution: 0.0,
+            friction_memory: None,
             press: None,
         }
     }

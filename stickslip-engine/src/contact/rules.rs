@@ -3,7 +3,7 @@
 use super::law::{Span, law};
 use super::{Friction, Growth};
 use crate::check::{Interference, interferences};
-use crate::scene::{ContactLaw, ContactRule, Normal, RuleNames, Scene};
+use crate::scene::{ContactLaw, ContactRule, FrictionMemory, Normal, RuleNames, Scene};
 use crate::tensor::Real;
 
 /// A contact rule in the precision of the engine.
@@ -19,6 +19,8 @@ pub struct Rule<T> {
     pub max_strain: T,
     /// Coefficient of restitution between rigid bodies.
     pub restitution: f64,
+    /// How friction remembers pressure, if the scene says.
+    pub friction_memory: Option<FrictionMemory>,
     /// How bodies that overlap at the start are pressed apart, if they are.
     pub press: Option<Interference>,
 }
@@ -31,6 +33,7 @@ impl<T: Real> From<&ContactRule> for Rule<T> {
             friction: Friction::from(rule),
             max_strain: T::of(rule.max_strain),
             restitution: rule.restitution,
+            friction_memory: rule.friction_memory,
             press: None,
         }
     }

@@ -440,6 +440,7 @@ mod tests {
                     friction,
                     max_strain: 1.0,
                     restitution: 0.0,
+                    friction_memory: None,
                     press: None,
                 });
             }

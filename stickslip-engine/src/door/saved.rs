@@ -5,9 +5,10 @@ use crate::column::Kind;
 use crate::contact::ContactSums;
 use crate::load::LoadSums;
 use crate::rigid::{Pose, RigidState};
-use crate::step::{JointSums, RelaxationProgress, TouchForce, WallSums};
+use crate::step::{JointSums, RelaxationProgress, SavedNodes, TouchForce, WallSums};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use stickslip_reference::contact::Memory;
 
 /// All that a simulation is between two steps, whatever its dimension and precision. A simulation of the same scene
 /// that takes it up takes the same steps, bit for bit.
@@ -49,6 +50,12 @@ pub struct SavedState {
     /// What rigid bodies pushed each other with; nothing where none did.
     #[serde(default)]
     pub(crate) touch_forces: Vec<TouchForce>,
+    /// Nodes of bodies on grids of their own.
+    #[serde(default)]
+    pub(crate) nodes: Vec<SavedNodes>,
+    /// Points of these bodies that touch.
+    #[serde(default)]
+    pub(crate) touching: Vec<Memory>,
     /// What left the domain, body by body; nothing where nothing did.
     #[serde(default)]
     pub(crate) removed: Vec<RemovedParticles>,
@@ -94,6 +101,8 @@ impl SavedState {
             walls: self.walls.clone(),
             longest_rigid: self.longest_rigid,
             touch_forces: self.touch_forces.clone(),
+            nodes: self.nodes.clone(),
+            touching: self.touching.clone(),
             removed: self.removed.clone(),
             written: self.written.clone(),
             of_snapshot: self.of_snapshot,
@@ -140,6 +149,8 @@ impl SavedState {
             joints: Vec::new(),
             springs: Vec::new(),
             touch_forces: Vec::new(),
+            nodes: Vec::new(),
+            touching: Vec::new(),
             walls: Vec::new(),
             gravity_work: 0.0,
             removed: Vec::new(),

@@ -127,6 +127,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             self.state.signal = all.signal;
             sums.iter_mut().zip(all.sums).for_each(|(sum, all)| *sum = all);
         }
+        if let Some(signal) = self.workspace.reference_signal {
+            self.state.signal = Some(self.state.signal.map_or(signal, |own| own.max(signal)));
+        }
         let [unbalanced, internal, external, kinetic, damped, unsettled, rubbed, torn, work, reduced] =
             sums.each_ref().map(ExactSum::value);
         self.state.damping += damped;
@@ -145,7 +148,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// Books what pairs of bodies did in the step. Of several ranks, each books the pairs whose sums it keeps.
     fn book_touches(&mut self, dt: T) {
         let start = Instant::now();
-        let Workspace { touches, mechanism, boundary, .. } = &mut self.workspace;
+        let Workspace { touches, mechanism, boundary, reference_touches, .. } = &mut self.workspace;
+        if !reference_touches.is_empty() {
+            touches[1].append(reference_touches);
+            touches[1].sort_unstable_by_key(BlockSums::rank);
+        }
         let (sums, place) = (&mut self.state.contact_sums, (&self.settings.lattice, &*boundary));
         if let Some(among) = &self.among {
             among.send_to_keepers(touches);
@@ -217,6 +224,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.list_touches(&mut two, (second, |_| true), works);
         [&one, &two].into_iter().for_each(|touches| self.workspace.sums.touch(touches));
         three.clear();
+        self.workspace.sums.touch(&self.workspace.reference_touches);
+        // What a body does to itself is no pair's.
+        self.workspace.reference_touches.retain(|touch| touch.bodies[0] < touch.bodies[1]);
         self.workspace.touches = [one, two, three];
         self.watch.lap("contact", start);
     }

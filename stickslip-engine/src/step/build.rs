@@ -2,6 +2,7 @@
 
 use super::among::{Find, Kinds, Look, SharedOut, Walked, share_out, walk, walk_together};
 use super::mechanism::{JointSums, RigidSurfaces};
+use super::reference::{ReferenceBody, References, is_reference};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
 use super::together::over_arrays;
@@ -233,6 +234,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
         let mut unbounded = Vec::new();
         let heated = heated_bodies(scene);
         let mut kinds: Option<Kinds<T, D>> = kept.map(Kinds::new);
+        let (mut references, mut nodes) = (Vec::new(), Vec::new());
         for (number, body) in scene.bodies.iter().enumerate() {
             let sites = scene.lattice(body);
             let filled = filled(number);
@@ -253,6 +255,11 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
             });
             let begun = Begun::of(scene, number, (filled.volume, center));
             all_filled.push(filled.count);
+            if is_reference(scene, number) {
+                let (constants, own) = ReferenceBody::new(scene, number, |x| begun.velocity(0, x))?;
+                references.push(constants);
+                nodes.push(own);
+            }
             let law = &mut laws[body.material];
             if law.is_none() {
                 *law = Some(Arc::new(material(scene, body)?));
@@ -313,6 +320,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 surfaces: RigidSurfaces::new(scene),
                 free: free_bodies(scene),
                 rigid,
+                references,
                 together,
                 averages_volume,
                 time: scene.time.clone(),
@@ -321,6 +329,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
             state: State {
                 bodies,
                 unbounded,
+                references: References { nodes, ..References::default() },
                 longest_rigid: longest_step(scene),
                 contact_sums: ContactSums::default(),
                 loads: vec![LoadSums::default(); scene.loads.len()],
@@ -376,7 +385,7 @@ impl Filled {
     /// All of a body; none of one without bounds.
     fn of(scene: &Scene, number: usize) -> Option<Self> {
         let body = &scene.bodies[number];
-        let filling = fill(&body.shape, &scene.lattice(body), body.particles)?;
+        let filling = fill(&body.shape, &scene.lattice(body), scene.arrangement(body))?;
         let (count, volume, center) = (filling.sites.len(), filling.volume(), filling.center());
         Some(Filled { count, volume, center, kept: (0..).zip(filling.sites).collect() })
     }
@@ -463,44 +472,51 @@ impl<'a> Begun<'a> {
         Begun { scene, number, center, density, motion }
     }
 
+    /// The part of its velocity that formulas say by place [m/s].
+    fn by_place(&self, x: [f64; 3]) -> [f64; 3] {
+        let moment = Moment { place: x, start: x, ..Moment::default() };
+        let values = self.scene.bodies[self.number].velocity_by_place.as_deref();
+        values.map_or([0.0; 3], |values| values.each_ref().map(|value| value.at_moment(&moment)))
+    }
+
+    /// Its velocity at a place; the particles of a point cloud may have been given theirs, by their numbers [m/s].
+    fn velocity(&self, number: usize, x: [f64; 3]) -> [f64; 3] {
+        let body = &self.scene.bodies[self.number];
+        let given = match &body.shape {
+            Shape::Curved(Curved::PointCloud(cloud)) => cloud.velocities(),
+            _ => None,
+        };
+        match (&body.motion, &self.motion) {
+            (BodyMotion::Free { velocity, spin }, _) => {
+                let at_start = || Vector(about(self.center, *velocity, *spin, x)) + Vector(self.by_place(x));
+                given.map_or_else(|| at_start().0, |given| given[number])
+            }
+            (_, Some(motion)) => motion.velocity_at(x),
+            _ => [0.0; 3],
+        }
+    }
+
     /// Some of its particles.
     fn particles<T: Real, const D: usize>(
         &self,
         kept: &[(u32, ParticleSite)],
         heated: bool,
     ) -> Result<Particles<T, D>, Problem> {
-        let Begun { scene, number, center, density, motion } = self;
+        let Begun { scene, number, density, motion, .. } = self;
         let body = &scene.bodies[*number];
         let places = kept.iter().map(|(_, site)| site.position).collect();
         let stresses = initial_stress::at(scene, *number, places)?;
-        let given = match &body.shape {
-            Shape::Curved(Curved::PointCloud(cloud)) => cloud.velocities(),
-            _ => None,
-        };
-        let by_place = |x: [f64; 3]| {
-            let moment = Moment { place: x, start: x, ..Moment::default() };
-            let values = body.velocity_by_place.as_deref();
-            values.map_or([0.0; 3], |values| values.each_ref().map(|value| value.at_moment(&moment)))
-        };
         let is_none =
-            |(_, site): &&(u32, ParticleSite)| !by_place(site.position).iter().all(|v| v.is_finite());
+            |(_, site): &&(u32, ParticleSite)| !self.by_place(site.position).iter().all(|v| v.is_finite());
         if let Some((_, site)) = kept.iter().find(is_none) {
             let place = site.position;
             return Err(Problem {
                 key: format!("bodies[{number}].velocity"),
-                found: format!("{:?} m/s at {place:?} m in `{}`", by_place(place), body.name),
+                found: format!("{:?} m/s at {place:?} m in `{}`", self.by_place(place), body.name),
                 allowed: "velocities that are numbers".to_string(),
                 help: None,
             });
         }
-        let velocity = |number: usize, x| match (&body.motion, motion) {
-            (BodyMotion::Free { velocity, spin }, _) => {
-                let at_start = || Vector(about(*center, *velocity, *spin, x)) + Vector(by_place(x));
-                given.map_or_else(|| at_start().0, |given| given[number])
-            }
-            (_, Some(motion)) => motion.velocity_at(x),
-            _ => [0.0; 3],
-        };
         // Only by some transfers do particles keep a spin; those of rigid bodies have theirs whatever the transfer,
         // and give the nodes their exact velocity.
         let turning = match (&body.motion, motion) {
@@ -513,7 +529,7 @@ impl<'a> Begun<'a> {
             let number = number as usize;
             Particle {
                 position: Vector::of(site.position),
-                velocity: Vector::of(velocity(number, site.position)),
+                velocity: Vector::of(self.velocity(number, site.position)),
                 spin: spin::<T, D>(turning),
                 mass: T::of(site.volume * density),
                 volume: T::of(site.volume),

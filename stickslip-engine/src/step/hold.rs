@@ -15,6 +15,7 @@ impl<T: Real, const D: usize> State<T, D> {
         let &State {
             ref bodies,
             ref unbounded,
+            ref references,
             ref contact_sums,
             ref loads,
             ref joints,
@@ -41,6 +42,7 @@ impl<T: Real, const D: usize> State<T, D> {
             (_, other) => body.clone_from(other),
         });
         self.unbounded.clone_from(unbounded);
+        self.references.clone_from(references);
         self.contact_sums.clone_from(contact_sums);
         self.loads.clone_from(loads);
         self.joints.clone_from(joints);

@@ -299,14 +299,15 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let (active, boundary, lattice) =
             (&self.workspace.active, &self.workspace.boundary, &self.settings.lattice);
         let (nodes, nodes_of) = (&self.workspace.field.nodes, self.kernels.nodes_of);
-        let time = self.state.time;
+        let (time, references) = (self.state.time, &self.settings.references);
         let now = time + ahead.map_or(0.0, |ahead| ahead.f64());
         each(&mut room.points, POINTS, |i, loaded| {
             let [number, point] = numbers[i].map(|number| number as usize);
             let (load, place) = (&loads[number], places[number][point]);
             let (body, point) = (&bodies[load.body], &load.points[point]);
             loaded.nodes.clear();
-            if place == NOWHERE {
+            let apart = references.binary_search_by_key(&load.body, |reference| reference.body).is_ok();
+            if place == NOWHERE || apart {
                 loaded.felt = PointForce::default();
                 return;
             }

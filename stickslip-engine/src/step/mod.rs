@@ -20,6 +20,7 @@
 //! | loads and supports at a node | `loads.rs` |
 //! | loads that heat | `heat.rs`, and [`crate::natural`] |
 //! | springs between parts of bodies | `springs.rs` |
+//! | bodies on grids of their own undeformed places | `reference/`, and [`stickslip_reference`] |
 //! | free rigid bodies, and joints between them | `mechanism/` |
 //! | glue at a node | `glue.rs` |
 //! | contact at a node | `contact/solve.rs`, by a law of `contact/law/` |
@@ -40,6 +41,7 @@ mod loads;
 mod mechanism;
 #[cfg(test)]
 mod naive_tests;
+mod reference;
 mod relax;
 mod saving;
 mod springs;
@@ -58,6 +60,7 @@ pub(crate) use build::{Shareable, build_empty, build_share};
 pub use build::{build, build_among, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
+pub(crate) use reference::SavedNodes;
 pub(crate) use relax::RelaxationProgress;
 pub(crate) use unbounded::particles_around;
 pub(crate) use walls::WallSums;
@@ -108,6 +111,7 @@ pub struct Engine<T: 'static, const D: usize> {
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
+        self.step_references(dt)?; //                             bodies on grids of their own
         match self.settings.time.stress_update {
             StressUpdate::First => self.update_stress_first(dt),
             StressUpdate::Last => self.update_stress_last(dt),

@@ -46,6 +46,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let State { time, steps, phase, signal, damping, impacts, gravity_work, relaxation, .. } = self.state;
         let bodies =
             self.state.bodies.iter().enumerate().zip(&self.settings.filled).zip(self.counts_of_all());
+        let (nodes, touching) = self.saved_nodes();
         SavedState {
             time,
             steps,
@@ -71,6 +72,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             joints: self.state.joints.clone(),
             springs: self.state.springs.clone(),
             touch_forces: self.state.touch_forces.clone(),
+            nodes,
+            touching,
             walls: self.state.walls.clone(),
             longest_rigid: Some(self.state.longest_rigid).filter(|step| step.is_finite()),
             removed: self.state.removed.clone(),
@@ -127,8 +130,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             particles(saved, body, (!without_bounds(i)).then_some(filled))
         });
         let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
-        for (body, particles) in self.state.bodies.iter_mut().zip(restored) {
-            body.particles.become_others(particles);
+        for (number, mut particles) in restored.into_iter().enumerate() {
+            if self.reference_of(number).is_some() {
+                // Cells know theirs by their numbers.
+                let order = by_number(particles.numbers());
+                particles.permute(&order);
+            }
+            self.state.bodies[number].particles.become_others(particles);
         }
         self.take_up_rest(saved);
         Ok(())
@@ -160,6 +168,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             || !saved.contact_sums.are_of(wanted)
         {
             return Err(RestoreError("it has numbers that no run has".to_string()));
+        }
+        if !self.are_nodes(&saved.nodes) {
+            return Err(RestoreError(
+                "it has other nodes of bodies with interior \"reference\" than the scene".into(),
+            ));
         }
         for (i, (body, saved)) in state.bodies.iter().zip(&saved.bodies).enumerate() {
             let name = self.name_of(i);
@@ -217,6 +230,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         (state.signal, state.time) = (saved.signal, saved.time);
         (state.steps, state.phase) = (saved.steps, saved.phase % SETTLES_EVERY);
+        self.take_up_nodes(&saved.nodes, saved.touching);
     }
 }
 

@@ -5,6 +5,7 @@ use super::cpu::Threads;
 use super::heat::Warmed;
 use super::loads::LoadRoom;
 use super::mechanism::{JointSums, Mechanism, RigidSurfaces, TouchForce};
+use super::reference::{ReferenceBody, References};
 use super::relax::RelaxationProgress;
 use super::springs::SpringRoom;
 use super::together::LawRoom;
@@ -57,6 +58,8 @@ pub struct Settings<T, const D: usize> {
     pub free: Vec<bool>,
     /// Rigid bodies, in their order.
     pub rigid: Vec<usize>,
+    /// Bodies on grids of their own, in their order.
+    pub references: Vec<ReferenceBody<T, D>>,
     /// Bodies whose law takes all particles at once, in their order.
     pub together: Vec<usize>,
     /// Whether any body's material wants means of dilatation rate and pressure.
@@ -73,6 +76,8 @@ pub struct State<T, const D: usize> {
     pub bodies: Vec<Body<T, D>>,
     /// Rigid bodies without bounds, with the blocks around which they have particles.
     pub unbounded: Vec<Unbounded<D>>,
+    /// Nodes of bodies on grids of their own.
+    pub references: References<D>,
     /// What contact did, pair by pair, and works since the start.
     pub contact_sums: ContactSums,
     /// The longest step that rigid bodies allow, by the scene with which the run began [s].
@@ -162,6 +167,10 @@ pub struct Workspace<T, const D: usize> {
     pub mechanism: Mechanism,
     /// Impulses of damping at the nodes in the last step, where there is damping [N s].
     pub damping_impulses: Vec<Vector<T, D>>,
+    /// What pairs with bodies on grids of their own did in the step.
+    pub reference_touches: Vec<BlockSums>,
+    /// The signal that these bodies allow, if there are any [m/s].
+    pub reference_signal: Option<f64>,
     /// What pairs of bodies did in the step, use by use of contact.
     pub touches: [Vec<BlockSums>; 3],
     /// Room for sums of mass times velocity over parts of a body's particles.
@@ -198,6 +207,8 @@ impl<T, const D: usize> Workspace<T, D> {
             displaced: Vec::new(),
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
+            reference_touches: Vec::new(),
+            reference_signal: None,
             touches: Default::default(),
             weights: Vec::new(),
             block_sums: Vec::new(),

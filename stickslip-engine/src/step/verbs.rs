@@ -30,7 +30,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let (bodies, lattice) = (&self.state.bodies, &self.settings.lattice);
         let left = self.workspace.listed.then_some(&self.workspace.left[..]);
         let idle = self.needs_no_grid();
-        let count = |body: usize| if idle { 0 } else { bodies[body].particles.len() };
+        let references = &self.settings.references;
+        let apart = |body: usize| references.binary_search_by_key(&body, |reference| reference.body).is_ok();
+        let count = |body: usize| if idle || apart(body) { 0 } else { bodies[body].particles.len() };
         let reach = self.kernels.width as i32 - 1;
         let base = |body: usize, particle: usize| {
             (self.kernels.home)(lattice, bodies[body].particles.place(particle))
@@ -83,10 +85,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         (0..count).map(|place| if *listed { active.here()[place] as usize } else { place })
     }
 
-    /// Whether no body deforms, and nothing acts on parts of bodies: rigid bodies alone move without a grid.
+    /// Whether no body deforms on the common grid, and nothing acts on parts of rigid ones: they move without a grid.
     pub(super) fn needs_no_grid(&self) -> bool {
-        self.settings.rigid.len() == self.state.bodies.len()
-            && self.settings.loads.is_empty()
+        self.settings.rigid.len() + self.settings.references.len() == self.state.bodies.len()
+            && self.settings.loads.iter().all(|load| self.reference_of(load.body).is_some())
             && self.settings.springs.is_empty()
     }
 

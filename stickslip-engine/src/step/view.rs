@@ -110,7 +110,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let (bodies, kernels) = (&self.state.bodies, self.kernels);
-        let sum = |range: Range<usize>| (range.start, bodies[range.start].totals(kernels));
+        let sum = |range: Range<usize>| {
+            (range.start, self.with_nodes(range.start, bodies[range.start].totals(kernels)))
+        };
         known
             .get_or_insert_with(|| match &self.among {
                 Some(among) => among.totals(bodies, kernels),

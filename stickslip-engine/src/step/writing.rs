@@ -29,6 +29,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         if self.among.is_some() {
             return Err(WriteError::Shared);
         }
+        if self.reference_of(number).is_some() {
+            return Err(WriteError::Fixed { name: name.to_string() });
+        }
         let body = &self.state.bodies[number];
         let found = body.particles.described().find(|(_, column)| column.name == name);
         let (first, column) = found.ok_or_else(|| NoColumn::among(&self.columns(number), name))?;

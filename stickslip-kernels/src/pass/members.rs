@@ -210,6 +210,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         }
     }
 
+    /// Writes a column.
     #[inline(always)]
     pub fn store<V: Lanes<Real = T>>(&self, column: usize, numbers: V) {
         // SAFETY: as above.
@@ -253,6 +254,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         }
     }
 
+    /// A vector, from its first component on.
     #[inline(always)]
     pub fn vector<V: Lanes<Real = T>>(&self, column: usize) -> Vector<V, D> {
         // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
@@ -263,6 +265,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         vector
     }
 
+    /// Writes a vector.
     #[inline(always)]
     pub fn store_vector<V: Lanes<Real = T>>(&self, column: usize, vector: &Vector<V, D>) {
         for i in 0..D {
@@ -280,6 +283,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         spin
     }
 
+    /// Writes the angular velocity.
     #[inline(always)]
     pub fn store_spin<V: Lanes<Real = T>>(&self, spin: &Vector<V, 3>) {
         for k in 0..spin_entries(D) {
@@ -297,6 +301,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         rate
     }
 
+    /// Writes the rate of strain that the transfer carries.
     #[inline(always)]
     pub fn store_strain_rate<V: Lanes<Real = T>>(&self, rate: &Symmetric<V>) {
         for (&entry, column) in rate.0.iter().zip(self.columns.transfer_columns()) {
@@ -315,6 +320,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         pressure
     }
 
+    /// Writes the pressure of the bulk viscosity.
     #[inline(always)]
     pub fn store_viscosity<V: Lanes<Real = T>>(&self, pressure: V) {
         for column in self.columns.viscosity_columns() {
@@ -338,6 +344,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         edges
     }
 
+    /// Writes the edges of domains that deform.
     #[inline(always)]
     pub fn store_edges<V: Lanes<Real = T>>(&self, edges: &Matrix<V>) {
         let columns = self.columns.domain_columns();
@@ -361,6 +368,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         Some(Natural::new::<D>((&entries, columns.len()), expansion))
     }
 
+    /// F.
     #[inline(always)]
     pub fn deformation<V: Lanes<Real = T>>(&self) -> Matrix<V> {
         let mut f = Matrix::ZERO;
@@ -370,6 +378,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         f
     }
 
+    /// Writes F.
     #[inline(always)]
     pub fn store_deformation<V: Lanes<Real = T>>(&self, f: &Matrix<V>) {
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
@@ -377,6 +386,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         }
     }
 
+    /// Cauchy stress [Pa].
     #[inline(always)]
     pub fn stress<V: Lanes<Real = T>>(&self) -> Symmetric<V> {
         let mut stress = Symmetric::ZERO;
@@ -386,6 +396,7 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
         stress
     }
 
+    /// Writes the stress.
     #[inline(always)]
     pub fn store_stress<V: Lanes<Real = T>>(&self, stress: &Symmetric<V>) {
         for k in 0..stress_entries(D) {

@@ -1,7 +1,7 @@
 //! One pass over particles: what it does to each of them, and who does it.
 
 mod group;
-mod members;
+pub mod members;
 mod naive;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! Filling a shape with particles.
 
 use super::fitted::fit;
+use super::form::{Form, PER_SIDE};
 use super::inside::NudgedPoint;
 use super::{Bounds, Curved, Shape};
 use serde::Serialize;
@@ -31,6 +32,8 @@ pub enum Arrangement {
     Lattice,
     /// In rings, shells or boxes that follow the shape's own surface; the volume is exact.
     Fitted,
+    /// Parts of the cells of a grid over the shape, see [`super::form`]; the volume is exact.
+    Parts,
 }
 
 /// Where a particle starts, and how large.
@@ -137,6 +140,8 @@ impl SiteLattice {
 /// particles differs from the shape's by the stairs along its surface, and agrees with it exactly for a box on the
 /// lattice. A site on the border but for round-off counts as [`Shape::contains`] says of a point exactly on it.
 ///
+/// Parts of cells have the volume and the centroid of what of them lies inside; their volumes add up to the shape's.
+///
 /// Fitted particles are at most the lattice's spacing apart, and their volumes add up to the shape's.
 pub fn fill(shape: &Shape, lattice: &SiteLattice, arrangement: Arrangement) -> Option<Filling> {
     Some(Filling { sites: sites(shape, lattice, arrangement)?.collect() })
@@ -161,6 +166,16 @@ pub fn sites<'a>(
             }))
         }
         Arrangement::Fitted => Box::new(fit(shape, lattice.spacing, lattice.dimension)?.into_iter()),
+        Arrangement::Parts => {
+            let cell = PER_SIDE as f64 * lattice.spacing;
+            let parts = match lattice.dimension {
+                2 => Form::<2>::new(shape, cell).ok()?.parts(),
+                _ => Form::<3>::new(shape, cell).ok()?.parts(),
+            };
+            let dimension = lattice.dimension;
+            let site = move |(place, volume)| ParticleSite::of_volume(place, volume, dimension);
+            Box::new(parts.into_iter().map(site))
+        }
     })
 }
 

@@ -1,6 +1,7 @@
 //! A shape together with its images: a face that lies on a mirror, or where the shape is joined to itself a period
 //! further, is no surface.
 
+use super::Bounds;
 use super::rotation::Rotation;
 use super::{Shape, SignedDistance};
 
@@ -45,6 +46,12 @@ impl MirroredShape {
         }
         self.repeats.push((axis, ends));
         self
+    }
+
+    /// A box that holds it; `None` of one without bounds, or with images.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let alone = self.mirrors.is_empty() && self.repeats.is_empty();
+        self.shape.bounds(self.dimension).filter(|_| alone)
     }
 
     /// Whether it is joined to itself along an axis.

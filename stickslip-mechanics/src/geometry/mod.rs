@@ -9,6 +9,7 @@ mod curved;
 mod distance;
 mod filling;
 mod fitted;
+pub mod form;
 mod from_file;
 mod image;
 mod inside;

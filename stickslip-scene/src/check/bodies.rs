@@ -90,8 +90,8 @@ fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
     };
     let (mut moment, mut whole) = ([0.0; 3], 0.0);
     let density = scene.materials[body.material].density;
-    let all =
-        geometry::sites(&body.shape, &lattice, body.particles).expect("other shapes are refused before");
+    let all = geometry::sites(&body.shape, &lattice, scene.arrangement(body))
+        .expect("other shapes are refused before");
     for ParticleSite { position, volume, half_width } in all {
         extent.particles += 1;
         extent.mass += volume * density;

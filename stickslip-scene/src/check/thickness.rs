@@ -55,7 +55,8 @@ pub(super) fn thickness(scene: &Scene, body: usize, enough: f64) -> Option<f64> 
     let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
     let shape = &scene.bodies[body].shape;
     let whole = MirroredShape::new(shape, continuing_faces(scene), axes);
-    let sites = geometry::sites(shape, &scene.lattice(&scene.bodies[body]), scene.bodies[body].particles)?;
+    let sites =
+        geometry::sites(shape, &scene.lattice(&scene.bodies[body]), scene.arrangement(&scene.bodies[body]))?;
     let (mut deepest, mut depth) = (Vec::new(), 0.0);
     for site in sites {
         let here = -whole.level(site.position).distance;

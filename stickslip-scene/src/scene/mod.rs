@@ -660,9 +660,21 @@ impl Scene {
 
     /// Where a body is computed: as it says, or else as the scene does. A rigid one is on the grid.
     pub fn interior(&self, body: usize) -> Interior {
-        match &self.bodies[body] {
+        self.interior_of(&self.bodies[body])
+    }
+
+    fn interior_of(&self, body: &Body) -> Interior {
+        match body {
             body if body.is_rigid() => Interior::Grid,
             body => body.interior.unwrap_or(self.discretization.interior),
+        }
+    }
+
+    /// How particles are laid out in a body: parts of the cells of a grid of its own, or as the body says.
+    pub fn arrangement(&self, body: &Body) -> Arrangement {
+        match self.interior_of(body) {
+            Interior::Reference => Arrangement::Parts,
+            Interior::Grid => body.particles,
         }
     }
 

@@ -46,6 +46,7 @@ mod press_fit;
 mod pulses;
 mod ranks;
 mod reactions;
+mod reference;
 mod relaxation;
 mod resistance;
 mod retries;

@@ -36,7 +36,7 @@ pub struct SharedOut {
 impl Walked {
     /// What they come to, each of which is shown by its place [m]; `None` of a body without bounds.
     pub fn of(scene: &Scene, body: &scene::Body, look: &mut dyn FnMut([f64; 3])) -> Option<Self> {
-        let all = sites(&body.shape, &scene.lattice(body), body.particles)?;
+        let all = sites(&body.shape, &scene.lattice(body), scene.arrangement(body))?;
         let mut walked = Walked { count: 0, volume: 0.0, center: [0.0; 3], first: None };
         for ParticleSite { position, volume, .. } in all {
             look(position);
@@ -54,7 +54,7 @@ impl Walked {
 
 /// The particles that fill a body, one after the other; none of a body without bounds.
 pub fn walk<'a>(scene: &Scene, body: &'a scene::Body) -> impl Iterator<Item = ParticleSite> + 'a {
-    sites(&body.shape, &scene.lattice(body), body.particles).into_iter().flatten()
+    sites(&body.shape, &scene.lattice(body), scene.arrangement(body)).into_iter().flatten()
 }
 
 /// Walks through the particles of all bodies, and shows those of some to each rank, by body and place [m].

@@ -32,7 +32,7 @@ use crate::ranks::{
     BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, bytes_of, combined, gathered,
     largest, message_to, read, told_first,
 };
-use crate::scene::{self, BodyMotion, Face, Load, NamedMaterial, OutsideValue, Problem, Scene};
+use crate::scene::{self, BodyMotion, Face, Interior, Load, NamedMaterial, OutsideValue, Problem, Scene};
 use crate::tensor::Real;
 use crate::threads::each_range;
 use crate::transfer::Share;
@@ -671,9 +671,11 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         _ => false,
     };
     let by_function = |load: &Load| load.action.outside().and_then(OutsideValue::function).is_some();
+    let is_apart = |body: usize| scene.interior(body) == Interior::Reference;
     let refused = [
         ("bodies.rigid", "a function from outside", scene.bodies.iter().any(moves_by_function)),
         ("loads", "a function from outside", scene.loads.iter().any(by_function)),
+        ("space.interior", "bodies with interior \"reference\"", (0..scene.bodies.len()).any(is_apart)),
         ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
     ];
     let found = refused.into_iter().find(|(.., is_there)| *is_there);

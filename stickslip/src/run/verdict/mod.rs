@@ -21,7 +21,7 @@ mod tearing;
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::{Memory, OutputError, RunWarning};
 use crate::run::start::Remembered;
-use crate::scene::{Body, Damping, HealthCheck, Response, Scene};
+use crate::scene::{Body, Damping, HealthCheck, Interior, Response, Scene};
 use cutting::StepCuttings;
 use energy::{EnergyBalance, WeighingTimes};
 use negligible::Negligible;
@@ -100,6 +100,11 @@ impl CheckInputs<'_> {
     fn free(&self) -> impl Iterator<Item = usize> {
         let free = |&i: &usize| !self.scene.bodies[i].is_rigid();
         (0..self.bodies.len()).filter(free)
+    }
+
+    /// Those of them that are computed on the common grid: what a grid does to particles, it does to these.
+    fn on_grid(&self) -> impl Iterator<Item = usize> {
+        self.free().filter(|&body| self.scene.interior(body) == Interior::Grid)
     }
 
     /// Speed of the fastest wave in an undeformed body [m/s].

@@ -37,7 +37,7 @@ impl Check for SelfContactCheck {
         let turn = self.looks;
         self.looks += 1;
         let all = *self.particles.get_or_insert_with(|| {
-            let free: Vec<usize> = look.free().collect();
+            let free: Vec<usize> = look.on_grid().collect();
             counts(look.simulation, &free).into_iter().map(|(count, _)| count).sum()
         });
         if all > FEW && !turn.is_multiple_of(SELDOM) {
@@ -45,7 +45,7 @@ impl Check for SelfContactCheck {
         }
         let cell = look.scene.discretization.cell;
         let mut findings = Vec::new();
-        for body in look.free().filter(|&body| !self.known[body]).collect::<Vec<_>>() {
+        for body in look.on_grid().filter(|&body| !self.known[body]).collect::<Vec<_>>() {
             let material = &look.scene.materials[look.scene.bodies[body].material];
             let apart = APART[usize::from(!material.law.trusts_deformation())] * cell;
             let Some(found) = meeting(look.simulation, body, (SIDE * cell, look.scene.dimension.axes()))

@@ -79,7 +79,9 @@ impl Check for StrainCheck {
             }
         }
         self.largest.resize(self.bodies.len(), 0.0);
-        look.free().filter_map(|body| self.bodies[body].look(look, body, &mut self.largest[body])).collect()
+        look.on_grid()
+            .filter_map(|body| self.bodies[body].look(look, body, &mut self.largest[body]))
+            .collect()
     }
 
     fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {

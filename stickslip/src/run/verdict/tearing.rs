@@ -44,7 +44,7 @@ impl Check for TearingCheck {
             );
             Some(Finding { body: Some(body), position: Some(position), worst: tear.share, message })
         };
-        look.free().filter_map(of_body).collect()
+        look.on_grid().filter_map(of_body).collect()
     }
 
     fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {

@@ -1,0 +1,58 @@
+//! What points that touch did, as sums by pair of bodies.
+
+use crate::contact::BlockSums;
+use crate::tensor::{Vector, cross};
+use stickslip_reference::contact::{Deforming, Rigid, Touch, relative_velocity};
+
+/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies.
+pub(super) fn book<const D: usize>(
+    all: &mut Vec<BlockSums>,
+    (bodies, rigid): (&[Deforming<'_, D>], &[&dyn Rigid]),
+    (touches, dt): (&[Touch<D>], f64),
+) {
+    all.clear();
+    for touch in touches {
+        let [body, partner] = [touch.memory.body as usize, touch.memory.partner as usize];
+        let pair = [body.min(partner), body.max(partner)];
+        let place = all.binary_search_by_key(&pair, |sums| sums.bodies).unwrap_or_else(|place| {
+            all.insert(place, BlockSums { bodies: pair, ..BlockSums::default() });
+            place
+        });
+        add(&mut all[place], (touch, dt), body < partner, (bodies, rigid));
+    }
+}
+
+fn add<const D: usize>(
+    sums: &mut BlockSums,
+    (touch, dt): (&Touch<D>, f64),
+    is_first: bool,
+    (bodies, rigid): (&[Deforming<'_, D>], &[&dyn Rigid]),
+) {
+    let at = touch.at.space();
+    let push = touch.normal * (touch.area * touch.pressure() * dt);
+    let rub = touch.traction * (touch.area * dt);
+    // Of the first body on the second.
+    let sign = if is_first { -1.0 } else { 1.0 };
+    let (on_second, tangential) = ((push + rub) * sign, rub * -sign);
+    let magnitude = (push + rub).norm();
+    let turn = cross(at, on_second.space());
+    for k in 0..3 {
+        sums.impulse[k] += on_second.space()[k];
+        sums.tangential[k] += tangential.space()[k];
+        sums.moment[k] += magnitude * at[k];
+        sums.turn[k] += turn[k];
+    }
+    sums.normal += push.norm();
+    sums.magnitude += magnitude;
+    sums.friction += touch.friction;
+    sums.spread.add(touch.area, at);
+    sums.gap += touch.area * touch.gap;
+    let velocity = relative_velocity(bodies, rigid, touch);
+    let slip = velocity - touch.normal * velocity.dot(touch.normal);
+    sums.slip += touch.area * if touch.friction > 0.0 { slip.norm() * dt } else { 0.0 };
+    if touch.sides.1.is_none() {
+        let speed = Vector::<f64, D>::of(rigid[touch.rigid].velocity(at));
+        sums.work += (push + rub).dot(speed);
+    }
+    sums.nodes += 1;
+}

@@ -1,0 +1,324 @@
+//! Bodies on grids of their own undeformed places: their part of a step.
+//!
+//! They share neither nodes nor momentum with the grid of the others: their nodes persist, and contact, loads and
+//! supports act on these. See [`stickslip_reference`] for the equations.
+//!
+//! ```text
+//! find_touches            points of surfaces inside partners
+//! press                   f_I += N_I A (p n + tau)
+//! load                    supports and loads, on points of bodies
+//! accelerate              v_I += dt (f_I / M_I + g)
+//! slip                    what the layer stores in shear
+//! advance                 x_I += dt v_I
+//! strain                  F from places, sigma = law(F), f_I = -sum V P grad N_I
+//! ```
+
+mod books;
+mod loads;
+mod rigid;
+
+use super::Engine;
+use crate::body::{Body, Totals};
+use crate::contact::Rules;
+use crate::door::StepError;
+use crate::geometry::Shape;
+use crate::geometry::form::{Form, NoForm};
+use crate::grid::Disjoint;
+use crate::lanes::{Laned, Processor};
+use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
+use crate::scene::{self, ContactLaw, Interior as Kind, Problem, Scene};
+use crate::tensor::{Vector, cross};
+use crate::threads::each;
+use rigid::RigidBody;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::time::Instant;
+use stickslip_reference::cells::Table;
+use stickslip_reference::contact::{
+    Deforming, Friction, FrictionMemory, Memory, Partner, Rigid, Touch, find, press, slip,
+};
+use stickslip_reference::interior::{Interior, Straining, strain};
+use stickslip_reference::surface::{SurfacePoint, points};
+
+/// What of such a body never changes.
+pub struct ReferenceBody<T, const D: usize> {
+    /// Its number among all bodies.
+    pub body: usize,
+    shape: Shape,
+    surface: Vec<SurfacePoint<D>>,
+    table: Table<T, D>,
+    /// Moduli of its longitudinal and its shear wave at rest [Pa].
+    moduli: [f64; 2],
+}
+
+/// What such bodies are between two steps.
+#[derive(Clone, Debug, Default)]
+pub struct References<const D: usize> {
+    /// The nodes of each.
+    pub nodes: Vec<Interior<D>>,
+    /// What is known of points that touch.
+    pub touching: Vec<Memory>,
+    /// Energy that each body's part of the layers stores [J].
+    pub layers: Vec<f64>,
+}
+
+/// The nodes of such a body as data: numbers one behind the other.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SavedNodes {
+    places: Vec<f64>,
+    velocities: Vec<f64>,
+    forces: Vec<f64>,
+    layer: f64,
+}
+
+/// What of a cell the fastest wave may cross in a step, over what it may where bodies are on the common grid: a body alone
+/// is stable at 0.9 cells, and one in contact at 0.6, where the usual Courant number is 0.4.
+const LARGER_STEPS: f64 = 1.5;
+
+impl<T: Laned, const D: usize> ReferenceBody<T, D> {
+    /// That of a body of a scene, and its nodes before anything moves, with velocities by place [m/s].
+    ///
+    /// # Errors
+    /// Its shape has no grid.
+    pub fn new(
+        scene: &Scene,
+        number: usize,
+        velocity: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> Result<(Self, Interior<D>), Problem> {
+        let body = &scene.bodies[number];
+        let material = &scene.materials[body.material];
+        let no_grid = |why: NoForm| Problem {
+            key: format!("bodies[{number}].shape"),
+            found: format!("a shape without a grid of its own: {why}"),
+            allowed: "shapes of two cells and more; or interior = \"grid\"".to_string(),
+            help: None,
+        };
+        let form = Arc::new(Form::<D>::new(&body.shape, scene.discretization.cell).map_err(no_grid)?);
+        let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
+        let nodes =
+            Interior::new(form.clone(), material.density, |place| Vector::of(velocity(place.space())));
+        let constants = ReferenceBody {
+            body: number,
+            shape: body.shape.clone(),
+            surface: points(&body.shape, &form),
+            table: Table::new(&form),
+            moduli: [modulus, material.law.elastic().shear_modulus.max(1e-3 * modulus)],
+        };
+        Ok((constants, nodes))
+    }
+}
+
+/// Whether a body of a scene is one.
+pub(super) fn is_reference(scene: &Scene, body: usize) -> bool {
+    scene.interior(body) == Kind::Reference
+}
+
+impl<T: Laned, const D: usize> Engine<T, D> {
+    /// The place of a body among those on grids of their own, if it is one.
+    pub(super) fn reference_of(&self, body: usize) -> Option<usize> {
+        self.settings.references.binary_search_by_key(&body, |reference| reference.body).ok()
+    }
+
+    /// Takes the bodies on grids of their own through a step.
+    ///
+    /// # Errors
+    /// A particle of theirs has a fault, or a function from outside no answer.
+    pub(super) fn step_references(&mut self, dt: T) -> Result<(), StepError> {
+        self.workspace.reference_signal = None;
+        if self.settings.references.is_empty() {
+            return Ok(());
+        }
+        let start = Instant::now();
+        self.touch_references(dt.f64())?;
+        self.watch.lap("contact", start);
+        let start = Instant::now();
+        let found = self.strain_references(dt);
+        self.watch.lap("stress update", start);
+        self.judge(found.fault)?;
+        self.judge(self.escaped_reference())?;
+        let fastest = self.fastest_reference(found.signal.f64());
+        self.workspace.reference_signal = Some(fastest);
+        Ok(())
+    }
+
+    /// Forces of contact and loads, and the motion of the nodes.
+    fn touch_references(&mut self, dt: f64) -> Result<(), StepError> {
+        let gravity = Vector::<f64, D>::of(self.settings.gravity.over_step(self.state.time, dt));
+        let loads = self.feel_reference_loads(dt)?;
+        let damping = self.settings.damping.double();
+        let Engine { settings, state, workspace, .. } = self;
+        let rigid: Vec<RigidBody<'_>> =
+            settings.rigid.iter().filter_map(|&body| RigidBody::new(body, &state.bodies[body])).collect();
+        let rigid: Vec<&dyn Rigid> = rigid.iter().map(|rigid| rigid as &dyn Rigid).collect();
+        let nodes = state.references.nodes.iter_mut();
+        let mut bodies: Vec<Deforming<'_, D>> = (settings.references.iter().zip(nodes))
+            .map(|(constants, interior)| Deforming {
+                body: constants.body,
+                interior,
+                shape: &constants.shape,
+                surface: &constants.surface,
+                moduli: constants.moduli,
+            })
+            .collect();
+        let meet = |a: usize, partner: Partner| {
+            let other = match partner {
+                Partner::Deforming(b) => settings.references[b].body,
+                Partner::Rigid(r) => rigid[r].body(),
+            };
+            settings.rules.rule(settings.rules.number(settings.references[a].body, other)).law
+                != ContactLaw::None
+        };
+        let rule = |touch: &Touch<D>| friction(&settings.rules, touch);
+        let mut touches = find(&bodies, &rigid, &state.references.touching, &meet);
+        press(&mut bodies, &mut touches, &rule);
+        for (body, loads) in bodies.iter_mut().zip(&loads.bodies) {
+            let before = damping.acts().then(|| body.interior.velocities.clone());
+            body.interior.accelerate_with(dt, gravity, &loads.inertia);
+            if let Some(before) = before {
+                state.damping += damp(body.interior, &before, |v, start| damping.damped(v, start, dt));
+            }
+        }
+        books::book(&mut workspace.reference_touches, (&bodies, &rigid), (&touches, dt));
+        let layers = &mut state.references.layers;
+        layers.clear();
+        layers.resize(bodies.len(), 0.0);
+        for touch in &touches {
+            let sides = [Some(touch.sides.0), touch.sides.1];
+            let share = touch.energy() / sides.iter().flatten().count() as f64;
+            sides.iter().flatten().for_each(|&side| layers[side] += share);
+        }
+        state.references.touching = slip(&bodies, &rigid, (&touches, dt), &rule);
+        bodies.into_iter().for_each(|body| body.interior.advance(dt));
+        self.account_reference_loads(&loads, dt);
+        Ok(())
+    }
+
+    /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
+    fn strain_references(&mut self, dt: T) -> Found<T> {
+        let processor = match self.settings.path {
+            ParticleLoop::Lanes(processor) => processor,
+            ParticleLoop::OneLane => Processor::Any,
+        };
+        let Engine { settings, state, .. } = self;
+        let mut found = vec![Found::NOTHING; settings.references.len()];
+        let (bodies, nodes) = (Disjoint::new(&mut state.bodies), Disjoint::new(&mut state.references.nodes));
+        each(&mut found, 1, |place, found| {
+            let ReferenceBody { body, table, .. } = &settings.references[place];
+            // SAFETY: every body and its nodes belong to one entry.
+            let (here, interior) = unsafe { (bodies.get(*body), nodes.get(place)) };
+            let Body::Here(here) = here else { return };
+            let straining = Straining { body: *body, dt, processor };
+            *found = strain(interior, table, (&here.matter, &mut here.particles), straining);
+        });
+        found.into_iter().fold(Found::NOTHING, Found::and)
+    }
+
+    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave in
+    /// undeformed lengths.
+    fn fastest_reference(&self, wave: f64) -> f64 {
+        let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
+        let speed = fastest.fold(0.0, |most: f64, v| most.max(v.dot(*v))).sqrt();
+        (wave / LARGER_STEPS).max(speed)
+    }
+
+    /// The first particle that has left the domain.
+    fn escaped_reference(&self) -> Option<ParticleFault> {
+        let [min, max] = self.settings.held?;
+        let outside = |x: Vector<T, D>| (0..D).any(|k| x[k] < min[k] || x[k] > max[k]);
+        self.settings.references.iter().find_map(|reference| {
+            let particles = &self.state.bodies[reference.body].particles;
+            let particle = (0..particles.len()).find(|&i| outside(particles.place(i).0))?;
+            let number = particles.numbers()[particle];
+            Some(ParticleFault { body: reference.body, particle, number, kind: FaultKind::Escaped })
+        })
+    }
+
+    /// What a body adds up to, of its nodes what is known better there: momentum, spin and kinetic energy; and what its
+    /// part of the layer stores where it touches.
+    pub(super) fn with_nodes(&self, body: usize, mut totals: Totals) -> Totals {
+        let Some(place) = self.reference_of(body) else { return totals };
+        let nodes = &self.state.references.nodes[place];
+        totals.kinetic = nodes.kinetic();
+        totals.strain += self.state.references.layers.get(place).copied().unwrap_or(0.0);
+        totals.momentum = nodes.momentum().space();
+        let mut sums = [[0.0; 3]; 2];
+        for ((mass, place), velocity) in nodes.masses.iter().zip(&nodes.places).zip(&nodes.velocities) {
+            let turn = cross(place.space(), velocity.space());
+            for k in 0..3 {
+                sums[0][k] += mass * turn[k];
+                sums[1][k] += mass * place.space()[k];
+            }
+        }
+        (totals.angular_momentum, totals.first_moment) = (sums[0], sums[1]);
+        totals
+    }
+
+    /// The nodes of these bodies as data, and the points that touch.
+    pub(super) fn saved_nodes(&self) -> (Vec<SavedNodes>, Vec<Memory>) {
+        let flat = |all: &[Vector<f64, D>]| all.iter().flat_map(|v| v.0).collect();
+        let References { nodes, touching, layers } = &self.state.references;
+        let saved = nodes.iter().enumerate().map(|(place, nodes)| SavedNodes {
+            places: flat(&nodes.places),
+            velocities: flat(&nodes.velocities),
+            forces: flat(&nodes.forces),
+            layer: layers.get(place).copied().unwrap_or(0.0),
+        });
+        (saved.collect(), touching.clone())
+    }
+
+    /// Whether saved nodes are those of these bodies.
+    pub(super) fn are_nodes(&self, saved: &[SavedNodes]) -> bool {
+        let nodes = &self.state.references.nodes;
+        let fits = |(saved, nodes): (&SavedNodes, &Interior<D>)| {
+            [&saved.places, &saved.velocities, &saved.forces]
+                .iter()
+                .all(|all| all.len() == D * nodes.places.len() && all.iter().all(|x| x.is_finite()))
+        };
+        saved.len() == nodes.len() && saved.iter().zip(nodes).all(fits)
+    }
+
+    /// Goes on with these nodes.
+    pub(super) fn take_up_nodes(&mut self, saved: &[SavedNodes], touching: Vec<Memory>) {
+        let vectors = |all: &[f64]| -> Vec<Vector<f64, D>> {
+            all.chunks_exact(D).map(|v| Vector(std::array::from_fn(|k| v[k]))).collect()
+        };
+        for (nodes, saved) in self.state.references.nodes.iter_mut().zip(saved) {
+            nodes.places = vectors(&saved.places);
+            nodes.velocities = vectors(&saved.velocities);
+            nodes.forces = vectors(&saved.forces);
+        }
+        self.state.references.layers = saved.iter().map(|saved| saved.layer).collect();
+        self.state.references.touching = touching;
+    }
+}
+
+/// Damps the velocities of nodes that had others before the forces of the step, and says what that took [J].
+fn damp<const D: usize>(
+    nodes: &mut Interior<D>,
+    before: &[Vector<f64, D>],
+    damped: impl Fn(Vector<f64, D>, Vector<f64, D>) -> Vector<f64, D>,
+) -> f64 {
+    let mut taken = 0.0;
+    for ((velocity, start), mass) in nodes.velocities.iter_mut().zip(before).zip(&nodes.masses) {
+        let left = damped(*velocity, *start);
+        taken += 0.5 * mass * (velocity.dot(*velocity) - left.dot(left));
+        *velocity = left;
+    }
+    nodes.follow();
+    taken
+}
+
+/// Friction at a point, by the rule of its pair.
+fn friction<T: Laned, const D: usize>(rules: &Rules<T>, touch: &Touch<D>) -> Friction {
+    let [a, b] = [touch.memory.body as usize, touch.memory.partner as usize];
+    let rule = rules.rule(rules.number(a, b));
+    let double = rule.friction.double();
+    Friction {
+        at_rest: double.at_rest,
+        kinetic: double.kinetic,
+        decay_speed: double.decay_speed,
+        memory: rule
+            .friction_memory
+            .map(|scene::FrictionMemory { length, speed }| FrictionMemory { length, speed }),
+    }
+}

@@ -1,0 +1,87 @@
+//! Where a grid lies over a shape.
+
+use super::spline::WIDTH;
+use super::{MOST_NODES, NoForm};
+use crate::geometry::{Bounds, Shape};
+use crate::tensor::Vector;
+
+/// Where a grid lies: its node zero and the directions of its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame<const D: usize> {
+    /// Undeformed place of node zero [m].
+    pub origin: Vector<f64, D>,
+    /// Unit vectors along the axes.
+    pub axes: [Vector<f64, D>; D],
+}
+
+impl<const D: usize> Frame<D> {
+    /// That of a grid of cells of this side over a shape, turned as the shape is, and its nodes along each axis.
+    ///
+    /// The grid lies evenly over the shape's box: so a face that is a whole number of cells from the other has nodes
+    /// on it, and there is one node beyond.
+    ///
+    /// # Errors
+    /// The shape has no bounds, or is thinner than two cells, or the grid is too large.
+    pub fn over(shape: &Shape, cell: f64) -> Result<(Self, [usize; D]), NoForm> {
+        let (bounds, turn) = upright::<D>(shape)?;
+        let size = bounds.size();
+        let across = size[..D].iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        if across < 2.0 * cell * (1.0 - 1e-9) {
+            return Err(NoForm::Thin(across));
+        }
+        let spans: [f64; D] = std::array::from_fn(|a| (size[a] / cell).round());
+        let nodes = spans.iter().map(|span| span + WIDTH as f64).product();
+        if nodes > MOST_NODES {
+            return Err(NoForm::Large(nodes));
+        }
+        let middle = bounds.middle();
+        let zero =
+            std::array::from_fn(|a| if a < D { middle[a] - cell * (0.5 * spans[a] + 1.0) } else { 0.0 });
+        let origin = Vector::of(turn.forward(zero));
+        let axes = std::array::from_fn(|a| {
+            Vector::of(turn.forward(std::array::from_fn(|k| zero[k] + f64::from(u8::from(k == a))))) - origin
+        });
+        Ok((Frame { origin, axes }, spans.map(|span| span as usize + WIDTH)))
+    }
+
+    /// The place that lies so many cells of this side from node zero along the axes [m].
+    #[inline]
+    pub fn place(&self, cells: Vector<f64, D>, cell: f64) -> Vector<f64, D> {
+        (0..D).fold(self.origin, |place, a| place + self.axes[a] * (cells[a] * cell))
+    }
+
+    /// How many cells of this side a place lies from node zero along the axes.
+    #[inline]
+    pub fn cells(&self, place: Vector<f64, D>, cell: f64) -> Vector<f64, D> {
+        let arm = place - self.origin;
+        Vector::from_fn(|a| arm.dot(self.axes[a]) / cell)
+    }
+
+    /// A vector of components along the grid's axes, along those of space.
+    #[inline]
+    pub fn turned(&self, own: [f64; D]) -> Vector<f64, D> {
+        (0..D).fold(Vector::ZERO, |sum, a| sum + self.axes[a] * own[a])
+    }
+}
+
+/// A turn about a point, or none.
+struct Turn {
+    of: Option<([f64; 3], [f64; 3], f64)>,
+    dimension: usize,
+}
+
+impl Turn {
+    fn forward(&self, point: [f64; 3]) -> [f64; 3] {
+        self.of.map_or(point, |turn| Shape::turned_point(point, turn, self.dimension))
+    }
+}
+
+/// The box of a shape before it is turned, and its turn.
+fn upright<const D: usize>(shape: &Shape) -> Result<(Bounds, Turn), NoForm> {
+    let (shape, of) = match shape {
+        Shape::Rotated { shape, center, axis, angle } => (&**shape, Some((*center, *axis, *angle))),
+        _ => (shape, None),
+    };
+    let bounds = shape.bounds(D).filter(Bounds::is_finite).ok_or(NoForm::Unbounded)?;
+    Ok((bounds, Turn { of, dimension: D }))
+}

@@ -1,0 +1,111 @@
+//! What points that touch do to the nodes: the pressure and the shear of the layer.
+
+use super::{Deforming, Friction, Memory, Rigid, Touch};
+use stickslip_mechanics::geometry::form::Weights;
+use stickslip_mechanics::tensor::Vector;
+
+/// Adds the pressure and the friction of all points that touch to the forces on the nodes: f_I += N_I A (p n + tau), of
+/// the partner the opposite. What of the stored slip friction does not bear, slips, and takes work.
+pub fn press<const D: usize>(
+    bodies: &mut [Deforming<'_, D>],
+    touches: &mut [Touch<D>],
+    rule: &dyn Fn(&Touch<D>) -> Friction,
+) {
+    for touch in touches {
+        bear(touch, &rule(touch));
+        let force = (touch.normal * touch.pressure() + touch.traction) * touch.area;
+        let (a, point) = (touch.sides.0, touch.memory.point as usize);
+        let weights = bodies[a].surface[point].weights;
+        add(&mut bodies[a], &weights, force);
+        if let (Some(b), Some(weights)) = (touch.sides.1, &touch.weights) {
+            add(&mut bodies[b], weights, -force);
+        }
+    }
+    for body in bodies {
+        body.interior.gather_forces();
+    }
+}
+
+/// What of the stored slip friction bears, and its traction.
+fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
+    let stored = Vector::<f64, D>::of(touch.memory.stored);
+    let tangential = stored - touch.normal * stored.dot(touch.normal);
+    // The layer turns with the surface: what it stored stays as long as it was.
+    let (length, along) = (stored.norm(), tangential.norm());
+    let tangential = if along > 0.0 { tangential * (length / along) } else { Vector::ZERO };
+    let pressure = touch.pressure();
+    let strength = match friction.memory {
+        Some(_) if touch.memory.remembered >= 0.0 && touch.memory.speed > 0.0 => touch.memory.remembered,
+        _ => pressure,
+    };
+    let bound = |speed: f64| {
+        let coefficient = friction.coefficient(speed);
+        // An infinite coefficient sticks even without any push.
+        if coefficient.is_finite() { coefficient * strength / touch.stiffness[1] } else { f64::INFINITY }
+    };
+    let most = if length > bound(0.0) || touch.memory.speed > 0.0 {
+        bound(touch.memory.speed.max(f64::MIN_POSITIVE))
+    } else {
+        f64::INFINITY
+    };
+    let (kept, slipped) =
+        if length > most { (tangential * (most / length), length - most) } else { (tangential, 0.0) };
+    touch.traction = kept * -touch.stiffness[1];
+    // The layer's forces at both ends of the step, on what slips, less what it stores: k/2 (s_0 + s_1) . (s* - s_1).
+    let mean = (Vector::<f64, D>::of(touch.memory.borne) + kept) * 0.5;
+    touch.friction = touch.area * touch.stiffness[1] * mean.dot(tangential - kept);
+    (touch.memory.stored, touch.memory.borne) = (kept.space(), kept.space());
+    touch.memory.speed = slipped;
+    if friction.memory.is_some() {
+        touch.memory.remembered = strength;
+    }
+}
+
+fn add<const D: usize>(body: &mut Deforming<'_, D>, weights: &Weights<D>, force: Vector<f64, D>) {
+    let interior = &mut *body.interior;
+    let (forces, offsets) = (&mut interior.forces, &interior.offsets);
+    weights.each(|k, value, _| forces[weights.node + offsets[k] as usize] += force * value);
+}
+
+/// Lets the layer store the slip of the step, by the velocities that move the bodies, and friction remember pressure: what
+/// is known of each point in the next step.
+pub fn slip<const D: usize>(
+    bodies: &[Deforming<'_, D>],
+    rigids: &[&dyn Rigid],
+    (touches, dt): (&[Touch<D>], f64),
+    rule: &dyn Fn(&Touch<D>) -> Friction,
+) -> Vec<Memory> {
+    let after = |touch: &Touch<D>| {
+        let slip = relative_velocity(bodies, rigids, touch);
+        let slip = slip - touch.normal * slip.dot(touch.normal);
+        let mut memory = touch.memory;
+        memory.stored = (Vector(memory.stored) + Vector((slip * dt).space())).0;
+        // It goes on slipping only as long as its surfaces move that way.
+        memory.speed = if memory.speed > 0.0 && slip.dot(touch.traction) < 0.0 { slip.norm() } else { 0.0 };
+        if let Some(law) = rule(touch).memory {
+            // What sticks has the strength of its pressure: only what slips lags behind.
+            memory.remembered = match memory.speed > 0.0 {
+                true => law.after(memory.remembered, (touch.pressure(), slip.norm(), dt)),
+                false => touch.pressure(),
+            };
+        }
+        memory
+    };
+    touches.iter().map(after).collect()
+}
+
+/// Velocity of a body at a point that touches, against its partner's [m/s].
+pub fn relative_velocity<const D: usize>(
+    bodies: &[Deforming<'_, D>],
+    rigids: &[&dyn Rigid],
+    touch: &Touch<D>,
+) -> Vector<f64, D> {
+    let body = &bodies[touch.sides.0];
+    let own = &body.surface[touch.memory.point as usize].weights;
+    let velocity = body.interior.at(own, &body.interior.velocities);
+    velocity
+        - match (touch.sides.1, &touch.weights) {
+            (Some(b), Some(weights)) => bodies[b].interior.at(weights, &bodies[b].interior.velocities),
+            _ => Vector::of(rigids[touch.rigid].velocity(touch.at.space())),
+        }
+}

@@ -1,0 +1,126 @@
+//! Where bodies touch, and what they do to each other there.
+//!
+//! Points of a body's surface are looked for in its partner: where the partner was undeformed, and how deep below its
+//! surface. A point that lies inside is pushed out by a layer that stores energy, and held by the same layer in shear as
+//! far as friction bears. What acts at a point acts on the nodes of both bodies by the functions there, so momentum is
+//! kept to round-off, and spin as closely as the place in the partner is known.
+//!
+//! ```text
+//! x(X_b) = q                        q: the point, X_b: its place in the partner
+//! g = phi(X_b) / |F^-T N|           gap: undeformed distance phi and normal N of the partner's surface
+//! n = F^-T N / |F^-T N|             normal, out of the partner
+//! p = k (-g),  g < 0                k = beta / (h_a / M_a + h_b / M_b), M: P-wave modulus, h: cell
+//! tau = -k_t s,  |tau| <= mu p      s: slip that the layer stores, ds/dt = u_t, k_t: the same of shear moduli
+//! f_I += N_I(X) A (p n + tau)       A: undeformed area of the point; half of it where the partner looks back
+//! ```
+//! Forces that follow from places alone keep energy, and need no solution for all points together; what friction takes is
+//! what the layer cannot bear. Points of both surfaces, each with half its area: Papadopoulos and Taylor (1992); a layer
+//! in shear: Oden and Pires (1983); friction that remembers pressure: Prakash and Clifton (1993).
+
+mod act;
+mod friction;
+mod look;
+mod near;
+#[cfg(test)]
+mod tests;
+
+pub use act::{press, relative_velocity, slip};
+pub use friction::{Friction, FrictionMemory};
+pub use look::{Seen, look};
+pub use near::{Partner, find};
+
+use crate::interior::Interior;
+use crate::surface::SurfacePoint;
+use serde::{Deserialize, Serialize};
+use stickslip_mechanics::geometry::{Shape, SignedDistance};
+use stickslip_mechanics::tensor::Vector;
+
+/// Stiffness of the layer over that of a cell of both bodies.
+pub const STIFFNESS: f64 = 4.0;
+
+/// A body that deforms, as contact sees it.
+pub struct Deforming<'a, const D: usize> {
+    /// Its number among all bodies.
+    pub body: usize,
+    /// Its nodes.
+    pub interior: &'a mut Interior<D>,
+    /// Its undeformed shape.
+    pub shape: &'a Shape,
+    /// Points of its surface.
+    pub surface: &'a [SurfacePoint<D>],
+    /// Moduli of its longitudinal and its shear wave at rest [Pa].
+    pub moduli: [f64; 2],
+}
+
+/// A rigid body, as contact sees it.
+pub trait Rigid: Sync {
+    /// Its number among all bodies.
+    fn body(&self) -> usize;
+    /// Distance from a place to its surface, and the direction out of it.
+    fn level(&self, place: [f64; 3]) -> SignedDistance;
+    /// Its velocity at a place [m/s].
+    fn velocity(&self, place: [f64; 3]) -> [f64; 3];
+    /// A box that holds it [m].
+    fn bounds(&self) -> [[f64; 3]; 2];
+}
+
+/// A point of a body's surface that touches a partner: what is known of it from one step to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    /// Number of the body.
+    pub body: u32,
+    /// Number of the point of its surface.
+    pub point: u32,
+    /// Number of the partner.
+    pub partner: u32,
+    /// Where the partner was undeformed there [m].
+    pub place: [f64; 3],
+    /// Pressure that friction remembers [Pa]; negative where it has none yet.
+    pub remembered: f64,
+    /// Slip that the layer stores, with that of the last step [m].
+    pub stored: [f64; 3],
+    /// What of it friction bore before that step [m].
+    pub borne: [f64; 3],
+    /// Speed at which it slipped in the step before; zero where it stuck [m/s].
+    pub speed: f64,
+}
+
+/// A point that touches, in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<const D: usize> {
+    /// What it is known by.
+    pub memory: Memory,
+    /// Places of the bodies in the lists of those that deform; none of a rigid partner.
+    pub sides: (usize, Option<usize>),
+    /// Place of a rigid partner in its list.
+    pub rigid: usize,
+    /// Where it is [m].
+    pub at: Vector<f64, D>,
+    /// Normal, out of the partner.
+    pub normal: Vector<f64, D>,
+    /// Gap, negative [m].
+    pub gap: f64,
+    /// Undeformed area times the share of this side [m^2], in the plane length [m].
+    pub area: f64,
+    /// Stiffness of the layer against pressure and against shear [Pa/m].
+    pub stiffness: [f64; 2],
+    /// Traction of friction on the body [Pa].
+    pub traction: Vector<f64, D>,
+    /// Work that friction took in the step [J].
+    pub friction: f64,
+    /// Functions of the partner there.
+    pub weights: Option<stickslip_mechanics::geometry::form::Weights<D>>,
+}
+
+impl<const D: usize> Touch<D> {
+    /// Pressure of the layer [Pa].
+    pub fn pressure(&self) -> f64 {
+        self.stiffness[0] * (-self.gap).max(0.0)
+    }
+
+    /// Energy that the layer stores [J].
+    pub fn energy(&self) -> f64 {
+        let [pressure, shear] = [self.pressure(), self.traction.norm()];
+        0.5 * self.area * (pressure * pressure / self.stiffness[0] + shear * shear / self.stiffness[1])
+    }
+}

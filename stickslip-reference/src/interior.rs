@@ -1,0 +1,161 @@
+//! A body on a grid of its own undeformed places: its nodes, and what a step does to them.
+
+mod pass;
+
+pub use pass::{Straining, strain};
+
+use std::sync::Arc;
+use stickslip_mechanics::geometry::form::{Form, Weights};
+use stickslip_mechanics::tensor::Vector;
+
+/// The nodes of a body. Those that follow others have the places and velocities of what they follow.
+#[derive(Clone, Debug)]
+pub struct Interior<const D: usize> {
+    /// The grid.
+    pub form: Arc<Form<D>>,
+    /// Mass that moves with each node [kg]; zero of those that follow others.
+    pub masses: Vec<f64>,
+    /// Where the nodes are [m].
+    pub places: Vec<Vector<f64, D>>,
+    /// Their velocities half a step before these places [m/s].
+    pub velocities: Vec<Vector<f64, D>>,
+    /// Forces on them [N].
+    pub forces: Vec<Vector<f64, D>>,
+    /// From a cell's first node to the others.
+    pub offsets: Vec<u32>,
+}
+
+impl<const D: usize> Interior<D> {
+    /// A body of this density, undeformed, with velocities by place [m/s].
+    pub fn new(
+        form: Arc<Form<D>>,
+        density: f64,
+        velocity: impl Fn(Vector<f64, D>) -> Vector<f64, D>,
+    ) -> Self {
+        let places: Vec<_> = (0..form.nodes()).map(|node| form.node_place(node)).collect();
+        let mut interior = Interior {
+            masses: form.node_volumes.iter().map(|volume| volume * density).collect(),
+            velocities: places.iter().map(|place| velocity(*place)).collect(),
+            forces: vec![Vector::ZERO; places.len()],
+            offsets: form.offsets(),
+            places,
+            form,
+        };
+        interior.follow();
+        interior
+    }
+
+    /// Followers take the places and velocities of what they follow: x_s = sum e x_m.
+    pub fn follow(&mut self) {
+        for (node, masters, shares) in self.form.followers.iter() {
+            let (mut place, mut velocity) = (Vector::ZERO, Vector::ZERO);
+            for (&master, &share) in masters.iter().zip(shares) {
+                place += self.places[master as usize] * share;
+                velocity += self.velocities[master as usize] * share;
+            }
+            (self.places[node], self.velocities[node]) = (place, velocity);
+        }
+    }
+
+    /// Gives the forces on followers to those that they follow: f_m += e f_s.
+    pub fn gather_forces(&mut self) {
+        for (node, masters, shares) in self.form.followers.iter() {
+            let force = std::mem::replace(&mut self.forces[node], Vector::ZERO);
+            for (&master, &share) in masters.iter().zip(shares) {
+                self.forces[master as usize] += force * share;
+            }
+        }
+    }
+
+    /// v += dt (f / M + g), and followers after it.
+    pub fn accelerate(&mut self, dt: f64, gravity: Vector<f64, D>) {
+        for node in 0..self.masses.len() {
+            if self.masses[node] > 0.0 {
+                self.velocities[node] += (self.forces[node] * (1.0 / self.masses[node]) + gravity) * dt;
+            }
+        }
+        self.follow();
+    }
+
+    /// The same of nodes that supports hold, with inertia of theirs beside its own [kg]; none where there is no support.
+    pub fn accelerate_with(&mut self, dt: f64, gravity: Vector<f64, D>, inertia: &[Vector<f64, D>]) {
+        if inertia.is_empty() {
+            return self.accelerate(dt, gravity);
+        }
+        for (node, (&mass, inertia)) in self.masses.iter().zip(inertia).enumerate() {
+            if mass > 0.0 {
+                let force = self.forces[node] + gravity * mass;
+                self.velocities[node] += Vector::from_fn(|i| force[i] / (mass + inertia[i])) * dt;
+            }
+        }
+        self.follow();
+    }
+
+    /// x += dt v, and followers after it.
+    pub fn advance(&mut self, dt: f64) {
+        for node in 0..self.masses.len() {
+            if self.masses[node] > 0.0 {
+                let velocity = self.velocities[node];
+                self.places[node] += velocity * dt;
+            }
+        }
+        self.follow();
+    }
+
+    /// sum N_I a_I of values at the nodes.
+    #[inline]
+    pub fn at(&self, weights: &Weights<D>, values: &[Vector<f64, D>]) -> Vector<f64, D> {
+        let mut sum = Vector::ZERO;
+        weights.each(|k, value, _| sum += values[weights.node + self.offsets[k] as usize] * value);
+        sum
+    }
+
+    /// x(X) [m] and F = sum x_I (x) grad N_I, row by row.
+    #[inline]
+    pub fn map(&self, weights: &Weights<D>) -> (Vector<f64, D>, [[f64; D]; D]) {
+        let (mut place, mut own) = (Vector::ZERO, [[0.0; D]; D]);
+        weights.each(|k, value, slope| {
+            let x = self.places[weights.node + self.offsets[k] as usize];
+            place += x * value;
+            for i in 0..D {
+                for a in 0..D {
+                    own[i][a] += x[i] * slope[a];
+                }
+            }
+        });
+        let per_cell = 1.0 / self.form.cell;
+        (place, own.map(|row| (self.form.frame.turned(row) * per_cell).0))
+    }
+
+    /// Momentum [N s].
+    pub fn momentum(&self) -> Vector<f64, D> {
+        self.masses.iter().zip(&self.velocities).map(|(mass, velocity)| *velocity * *mass).sum()
+    }
+
+    /// Kinetic energy [J].
+    pub fn kinetic(&self) -> f64 {
+        self.masses
+            .iter()
+            .zip(&self.velocities)
+            .map(|(mass, velocity)| 0.5 * mass * velocity.dot(*velocity))
+            .sum()
+    }
+
+    /// Corners of a box that holds the body: a place is a mean of the nodes around it [m].
+    pub fn bounds(&self) -> [Vector<f64, D>; 2] {
+        let mut bounds = [Vector([f64::INFINITY; D]), Vector([f64::NEG_INFINITY; D])];
+        for cell in &self.form.cells {
+            for &offset in &self.offsets {
+                let x = self.places[(cell.node + offset) as usize];
+                for a in 0..D {
+                    bounds[0][a] = bounds[0][a].min(x[a]);
+                    bounds[1][a] = bounds[1][a].max(x[a]);
+                }
+            }
+        }
+        bounds
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,309 @@
+//! The one pass of a step over the particles: F from places, stress, forces on the nodes.
+//!
+//! All particles of a cell at a time, one in each lane: they see the same nodes.
+
+use super::Interior;
+use crate::cells::Table;
+use stickslip_kernels::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Pack, Processor, Work};
+use stickslip_kernels::matter::Matter;
+use stickslip_kernels::particles::{ColumnStart, Columns, Particles};
+use stickslip_kernels::pass::members::{Copies, HistoryOfGroup, Members};
+use stickslip_kernels::pass::{FaultKind, Found, ParticleFault, Verbs};
+use stickslip_mechanics::geometry::form::{Cell, Form};
+use stickslip_mechanics::material::{Material, Motion, Thickening, Thickness};
+use stickslip_mechanics::tensor::{Matrix, Number, Symmetric, Vector};
+
+/// What the pass is told.
+#[derive(Clone, Copy, Debug)]
+pub struct Straining<T> {
+    /// Which body it is, for what is said of faults.
+    pub body: usize,
+    /// How long the step took that led to these places; zero for none [s].
+    pub dt: T,
+    /// What the processor has.
+    pub processor: Processor,
+}
+
+/// Lets the particles take the deformation that the nodes' places say, and the stress of their law, and adds up the
+/// forces on the nodes:
+///
+/// ```text
+/// F = sum x_I (x) grad N_I      sigma = law(F, F F_before^-1, dt)      P = J sigma F^-T      f_I = -sum V_p P grad N_I
+/// x_p = sum N_I x_I             v_p = sum N_I v_I
+/// ```
+///
+/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for.
+pub fn strain<T: Laned, const D: usize>(
+    interior: &mut Interior<D>,
+    table: &Table<T, D>,
+    (matter, particles): (&Matter<T>, &mut Particles<T, D>),
+    straining: Straining<T>,
+) -> Found<T> {
+    interior.forces.fill(Vector::ZERO);
+    let Straining { body, dt, processor } = straining;
+    let mut found = Found::NOTHING;
+    let columns = particles.open();
+    let visit = Visit { interior, table, matter, columns, body, dt, found: &mut found };
+    T::run(processor, visit);
+    interior.gather_forces();
+    // Cells know particles by their places, which ascend as their numbers do.
+    let fault =
+        found.fault.map(|fault| ParticleFault { number: particles.numbers()[fault.particle], ..fault });
+    Found { fault, ..found }
+}
+
+struct Visit<'a, T, const D: usize> {
+    interior: &'a mut Interior<D>,
+    table: &'a Table<T, D>,
+    matter: &'a Matter<T>,
+    columns: Columns<T, D>,
+    body: usize,
+    dt: T,
+    found: &'a mut Found<T>,
+}
+
+impl<T: Laned, const D: usize> Work for Visit<'_, T, D> {
+    type Real = T;
+    type Output = ();
+    const BY_AVX512: bool = D == 3 && size_of::<T>() == size_of::<f64>();
+
+    #[inline(always)]
+    fn run<M: Machine<T>>(mut self) {
+        if D == 3 { self.cells::<M::Wide>() } else { self.cells::<M::Quad>() }
+    }
+}
+
+/// What a body's particles have in common, in lanes.
+struct Constants<V> {
+    material: Material<V>,
+    per_density: V,
+    dt: V,
+    /// Whether the law asks for the deformation of the step.
+    by_increments: bool,
+}
+
+impl<T: Laned, const D: usize> Visit<'_, T, D> {
+    #[inline(always)]
+    fn constants<V: Lanes<Real = T>>(&self) -> Constants<V> {
+        Constants {
+            material: self.matter.material.map(V::splat),
+            per_density: V::splat(T::ONE / self.matter.density),
+            dt: V::splat(self.dt),
+            by_increments: !matches!(*self.matter.material, Material::NeoHookean(_)),
+        }
+    }
+
+    #[inline(always)]
+    fn cells<V: Lanes<Real = T>>(&mut self) {
+        let constants = self.constants::<V>();
+        let form = self.interior.form.clone();
+        let mut copies = Copies::EMPTY;
+        for (number, cell) in form.cells.iter().enumerate() {
+            let mut index = [0; MOST_LANES];
+            let count = cell.count as usize;
+            index.iter_mut().zip(cell.first..).for_each(|(index, particle)| *index = particle);
+            let columns = self.columns;
+            let members = if count == V::COUNT {
+                Members::in_a_row(&columns, &index[..count])
+            } else {
+                let verbs = Verbs { update_stress: true, ..Verbs::default() };
+                Members::copied::<V>(&columns, &index[..count], &verbs, &mut copies)
+            };
+            if self.group(&constants, (number, cell), &members).is_err() {
+                self.find_fault(number, cell);
+            }
+        }
+    }
+
+    /// Takes the particles of a cell one by one, to find out what is wrong with whom.
+    #[inline(never)]
+    fn find_fault(&mut self, number: usize, cell: &Cell) {
+        let constants = self.constants::<Pack<T, 1>>();
+        let (columns, all) = (self.columns, cell.first..cell.first + cell.count);
+        for (lane, particle) in all.enumerate() {
+            let index = [particle];
+            let members = Members::in_a_row(&columns, &index);
+            let one = Cell { first: particle, count: 1, ..*cell };
+            if let Err(kind) = self.lanes(&constants, (number, &one, lane), &members) {
+                let particle = particle as usize;
+                let fault = ParticleFault { body: self.body, particle, number: particle as u32, kind };
+                *self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn group<V: Lanes<Real = T>>(
+        &mut self,
+        constants: &Constants<V>,
+        (number, cell): (usize, &Cell),
+        members: &Members<'_, T, D>,
+    ) -> Result<(), FaultKind> {
+        self.lanes(constants, (number, cell, 0), members)
+    }
+
+    /// The particles of a cell from a lane of its table on.
+    #[inline(always)]
+    fn lanes<V: Lanes<Real = T>>(
+        &mut self,
+        constants: &Constants<V>,
+        (number, cell, lane): (usize, &Cell, usize),
+        members: &Members<'_, T, D>,
+    ) -> Result<(), FaultKind> {
+        let entries = self.table.of(number);
+        let node = cell.node as usize;
+        let anchor = self.interior.places[node];
+        let (mut own, mut place, mut velocity) =
+            (Matrix::<V>::ZERO, Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
+        for k in 0..Form::<D>::NODES {
+            let at = node + self.interior.offsets[k] as usize;
+            let (x, v) = (self.interior.places[at], self.interior.velocities[at]);
+            // SAFETY: a table has as many numbers as any machine has lanes; a single lane reads one.
+            let entry =
+                |e: usize| unsafe { V::load(entries[k * Table::<T, D>::ENTRIES + e].0[lane..].as_ptr()) };
+            let value = entry(0);
+            for i in 0..D {
+                let (x, v) = (V::splat(T::of(x[i] - anchor[i])), V::splat(T::of(v[i])));
+                place[i] = value.times_plus(x, place[i]);
+                velocity[i] = value.times_plus(v, velocity[i]);
+                for a in 0..D {
+                    own.0[i][a] = entry(1 + a).times_plus(x, own.0[i][a]);
+                }
+            }
+        }
+        for i in 0..D {
+            place[i] += V::splat(T::of(anchor[i]));
+        }
+        let before = members.deformation::<V>();
+        let mut deformation = own;
+        if D == 2 {
+            deformation.0[2][2] = before.0[2][2];
+        }
+        let mut jacobian = deformation.det();
+        let mut sound = u32::MAX;
+        let mut fault = None;
+        let mut require = |lanes: u32, kind: FaultKind| {
+            sound &= lanes;
+            if fault.is_none() && lanes & 1 == 0 {
+                fault = Some(kind);
+            }
+        };
+        require(V::splat(T::LARGEST).at_least(jacobian.abs()), FaultKind::NotFinite);
+        require(jacobian.at_least(V::splat(T::TINY)), FaultKind::Inverted);
+        let increment =
+            if constants.by_increments { deformation * before.inverse() } else { Matrix::IDENTITY };
+        let stress = if constants.by_increments { members.stress::<V>() } else { Symmetric::ZERO };
+        let mut history = HistoryOfGroup::new(members);
+        let mut motion = Motion { deformation, jacobian, increment, stress, dt: constants.dt };
+        if D == 2 && self.matter.thickness == Thickness::Free {
+            let Thickening { stretch, found } = constants.material.thickening(&motion, &history);
+            require(found, FaultKind::NoThickness);
+            motion = motion.thickened(stretch);
+            deformation.0[2][2] *= stretch;
+            jacobian *= stretch;
+        }
+        let (stress, modulus) = constants.material.respond_with_modulus((&motion, true), &mut history);
+        history.changed = true;
+        let sum = stress.0.iter().fold(V::ZERO, |sum, &entry| sum + entry);
+        require(V::splat(T::LARGEST).at_least(sum.abs()), FaultKind::NotFinite);
+        let all = (1 << V::COUNT) - 1;
+        if sound & all != all {
+            let kind = fault.unwrap_or(FaultKind::NotFinite);
+            if V::COUNT == 1 {
+                members.store_for_report((&deformation, jacobian * members.mass::<V>()), kind);
+            }
+            return Err(kind);
+        }
+        let inverse = deformation.inverse();
+        let volume = members.mass::<V>() * constants.per_density;
+        let speed = modulus * constants.per_density * squared_shrinking::<V, D>(&inverse);
+        let signals = speed.numbers();
+        for &signal in &signals.0[..V::COUNT] {
+            let signal = signal.sqrt();
+            self.found.signal = if signal > self.found.signal { signal } else { self.found.signal };
+        }
+        members.store_vector(ColumnStart::<D>::POSITION, &place);
+        members.store_vector(ColumnStart::<D>::VELOCITY, &velocity);
+        members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::SPIN);
+        members.store_deformation(&deformation);
+        members.store_stress(&stress);
+        members.give_back::<V>(ColumnStart::<D>::DEFORMATION..ColumnStart::<D>::START);
+        members.store(ColumnStart::<D>::VOLUME, volume * jacobian);
+        members.give_back::<V>(ColumnStart::<D>::VOLUME..ColumnStart::<D>::VOLUME + 1);
+        history.store::<V>();
+        // -V P of the particles that there are.
+        let pull = (volume * jacobian).first(members.count());
+        let mut pulls = Matrix::ZERO;
+        for i in 0..D {
+            for a in 0..D {
+                let mut sum = V::NOTHING;
+                for j in 0..D {
+                    sum = stress.at(i, j).times_plus(inverse.0[a][j], sum);
+                }
+                pulls.0[i][a] = -(sum * pull);
+            }
+        }
+        self.scatter(&pulls, (number, cell, lane));
+        Ok(())
+    }
+
+    /// f_I += sum over the lanes of -V P grad N_I
+    #[inline(always)]
+    fn scatter<V: Lanes<Real = T>>(
+        &mut self,
+        pulls: &Matrix<V>,
+        (number, cell, lane): (usize, &Cell, usize),
+    ) {
+        let entries = self.table.of(number);
+        let node = cell.node as usize;
+        for k in 0..Form::<D>::NODES {
+            // SAFETY: as above.
+            let entry =
+                |e: usize| unsafe { V::load(entries[k * Table::<T, D>::ENTRIES + e].0[lane..].as_ptr()) };
+            let mut force = Vector([V::NOTHING; 3]);
+            for i in 0..D {
+                for a in 0..D {
+                    force[i] = pulls.0[i][a].times_plus(entry(1 + a), force[i]);
+                }
+            }
+            let at = node + self.interior.offsets[k] as usize;
+            let forces = &mut self.interior.forces[at].0;
+            forces.iter_mut().zip(sums(force.0)).for_each(|(force, sum)| *force += sum.f64());
+        }
+    }
+}
+
+/// The sums over the lanes of three numbers.
+#[inline(always)]
+fn sums<V: Lanes>([x, y, z]: [V; 3]) -> [V::Real; 3] {
+    if V::COUNT == 1 {
+        return [x.numbers().0[0], y.numbers().0[0], z.numbers().0[0]];
+    }
+    let (pairs, last): (Numbers<V::Real>, Numbers<V::Real>) =
+        (x.add_neighbours(y).numbers(), z.add_neighbours(V::ZERO).numbers());
+    let mut sums = [V::Real::ZERO; 3];
+    for pair in 0..V::COUNT / 2 {
+        sums[0] += pairs.0[2 * pair];
+        sums[1] += pairs.0[2 * pair + 1];
+        sums[2] += last.0[2 * pair];
+    }
+    sums
+}
+
+/// A bound of |F^-1 n|^2 over all directions, from the inverse of F: the largest sum of magnitudes in a row of F^-1 F^-T.
+#[inline(always)]
+fn squared_shrinking<V: Number, const D: usize>(inverse: &Matrix<V>) -> V {
+    let mut most = V::ZERO;
+    for i in 0..D {
+        let mut row = V::ZERO;
+        for j in 0..D {
+            let mut product = V::ZERO;
+            for k in 0..D {
+                product += inverse.0[i][k] * inverse.0[j][k];
+            }
+            row += product.abs();
+        }
+        most = most.max(row);
+    }
+    most
+}
