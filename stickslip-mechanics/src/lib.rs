@@ -14,6 +14,9 @@ pub mod tensor;
 // Shapes: inside(x), bounds; filling them with particles.
 pub mod geometry;
 
+// Friction of two surfaces: its coefficient, and what of the pressure it remembers.
+pub mod friction;
+
 // What a column of particles holds: name, unit, components.
 pub mod column;
 

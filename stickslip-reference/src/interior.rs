@@ -21,8 +21,6 @@ pub struct Interior<const D: usize> {
     pub velocities: Vec<Vector<f64, D>>,
     /// Forces on them [N].
     pub forces: Vec<Vector<f64, D>>,
-    /// From a cell's first node to the others.
-    pub offsets: Vec<u32>,
 }
 
 impl<const D: usize> Interior<D> {
@@ -37,7 +35,6 @@ impl<const D: usize> Interior<D> {
             masses: form.node_volumes.iter().map(|volume| volume * density).collect(),
             velocities: places.iter().map(|place| velocity(*place)).collect(),
             forces: vec![Vector::ZERO; places.len()],
-            offsets: form.offsets(),
             places,
             form,
         };
@@ -106,8 +103,15 @@ impl<const D: usize> Interior<D> {
     #[inline]
     pub fn at(&self, weights: &Weights<D>, values: &[Vector<f64, D>]) -> Vector<f64, D> {
         let mut sum = Vector::ZERO;
-        weights.each(|k, value, _| sum += values[weights.node + self.offsets[k] as usize] * value);
+        weights.each(|k, value, _| sum += values[weights.node + self.form.offsets[k] as usize] * value);
         sum
+    }
+
+    /// f_I += N_I f, of a force at a place [N].
+    #[inline]
+    pub fn push(&mut self, weights: &Weights<D>, force: Vector<f64, D>) {
+        let (forces, offsets) = (&mut self.forces, &self.form.offsets);
+        weights.each(|k, value, _| forces[weights.node + offsets[k] as usize] += force * value);
     }
 
     /// x(X) [m] and F = sum x_I (x) grad N_I, row by row.
@@ -115,7 +119,7 @@ impl<const D: usize> Interior<D> {
     pub fn map(&self, weights: &Weights<D>) -> (Vector<f64, D>, [[f64; D]; D]) {
         let (mut place, mut own) = (Vector::ZERO, [[0.0; D]; D]);
         weights.each(|k, value, slope| {
-            let x = self.places[weights.node + self.offsets[k] as usize];
+            let x = self.places[weights.node + self.form.offsets[k] as usize];
             place += x * value;
             for i in 0..D {
                 for a in 0..D {
@@ -145,7 +149,7 @@ impl<const D: usize> Interior<D> {
     pub fn bounds(&self) -> [Vector<f64, D>; 2] {
         let mut bounds = [Vector([f64::INFINITY; D]), Vector([f64::NEG_INFINITY; D])];
         for cell in &self.form.cells {
-            for &offset in &self.offsets {
+            for &offset in &self.form.offsets {
                 let x = self.places[(cell.node + offset) as usize];
                 for a in 0..D {
                     bounds[0][a] = bounds[0][a].min(x[a]);

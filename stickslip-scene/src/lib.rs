@@ -4,7 +4,7 @@
 
 #![forbid(unsafe_code)]
 
-pub use stickslip_mechanics::{column, geometry, material, number, outside, scheme, tensor};
+pub use stickslip_mechanics::{column, friction, geometry, material, number, outside, scheme, tensor};
 
 // Grains in a container, at random and without overlap.
 pub mod packing;

@@ -16,6 +16,7 @@
 use super::Pair;
 use crate::scene::ContactRule;
 use crate::tensor::Real;
+use stickslip_scene::friction::coefficient;
 
 /// Resistance of a pair of surfaces against slip and against parting.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,15 +74,7 @@ impl<T: Real> Friction<T> {
 
     /// mu(s) [-]
     pub fn coefficient(&self, slip: T) -> T {
-        if self.at_rest == self.kinetic {
-            return self.at_rest;
-        }
-        let rest = if self.decay_speed > T::ZERO {
-            T::of(libm::exp(-(slip / self.decay_speed).f64()))
-        } else {
-            T::ZERO
-        };
-        self.kinetic + (self.at_rest - self.kinetic) * rest
+        coefficient([self.at_rest, self.kinetic], self.decay_speed, slip)
     }
 
     /// The fraction of the slip `slip` [m/s] that the surfaces stop under a load: 1 where they stick [-].

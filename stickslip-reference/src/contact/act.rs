@@ -1,6 +1,6 @@
 //! What points that touch do to the nodes: the pressure and the shear of the layer.
 
-use super::{Deforming, Friction, Memory, Rigid, Touch};
+use super::{Deforming, Friction, Memory, Met, Rigid, Touch};
 use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::Vector;
 
@@ -14,11 +14,10 @@ pub fn press<const D: usize>(
     for touch in touches {
         bear(touch, &rule(touch));
         let force = (touch.normal * touch.pressure() + touch.traction) * touch.area;
-        let (a, point) = (touch.sides.0, touch.memory.point as usize);
-        let weights = bodies[a].surface[point].weights;
-        add(&mut bodies[a], &weights, force);
-        if let (Some(b), Some(weights)) = (touch.sides.1, &touch.weights) {
-            add(&mut bodies[b], weights, -force);
+        let body = &mut bodies[touch.side];
+        body.interior.push(&body.surface[touch.memory.point as usize].weights, force);
+        if let Met::Deforming(b, weights) = &touch.met {
+            bodies[*b].interior.push(weights, -force);
         }
     }
     for body in bodies {
@@ -38,13 +37,12 @@ fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
         Some(_) if touch.memory.remembered >= 0.0 && touch.memory.speed > 0.0 => touch.memory.remembered,
         _ => pressure,
     };
-    let bound = |speed: f64| {
-        let coefficient = friction.coefficient(speed);
+    let bound = |coefficient: f64| {
         // An infinite coefficient sticks even without any push.
         if coefficient.is_finite() { coefficient * strength / touch.stiffness[1] } else { f64::INFINITY }
     };
-    let most = if length > bound(0.0) || touch.memory.speed > 0.0 {
-        bound(touch.memory.speed.max(f64::MIN_POSITIVE))
+    let most = if length > bound(friction.at_rest) || touch.memory.speed > 0.0 {
+        bound(friction.coefficient(touch.memory.speed))
     } else {
         f64::INFINITY
     };
@@ -61,23 +59,18 @@ fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
     }
 }
 
-fn add<const D: usize>(body: &mut Deforming<'_, D>, weights: &Weights<D>, force: Vector<f64, D>) {
-    let interior = &mut *body.interior;
-    let (forces, offsets) = (&mut interior.forces, &interior.offsets);
-    weights.each(|k, value, _| forces[weights.node + offsets[k] as usize] += force * value);
-}
-
 /// Lets the layer store the slip of the step, by the velocities that move the bodies, and friction remember pressure: what
 /// is known of each point in the next step.
 pub fn slip<const D: usize>(
     bodies: &[Deforming<'_, D>],
     rigids: &[&dyn Rigid],
-    (touches, dt): (&[Touch<D>], f64),
+    (touches, dt): (&mut [Touch<D>], f64),
     rule: &dyn Fn(&Touch<D>) -> Friction,
 ) -> Vec<Memory> {
-    let after = |touch: &Touch<D>| {
-        let slip = relative_velocity(bodies, rigids, touch);
-        let slip = slip - touch.normal * slip.dot(touch.normal);
+    let after = |touch: &mut Touch<D>| {
+        let velocity = relative_velocity(bodies, rigids, touch);
+        touch.slip = velocity - touch.normal * velocity.dot(touch.normal);
+        let slip = touch.slip;
         let mut memory = touch.memory;
         memory.stored = (Vector(memory.stored) + Vector((slip * dt).space())).0;
         // It goes on slipping only as long as its surfaces move that way.
@@ -91,21 +84,21 @@ pub fn slip<const D: usize>(
         }
         memory
     };
-    touches.iter().map(after).collect()
+    touches.iter_mut().map(after).collect()
 }
 
 /// Velocity of a body at a point that touches, against its partner's [m/s].
-pub fn relative_velocity<const D: usize>(
+fn relative_velocity<const D: usize>(
     bodies: &[Deforming<'_, D>],
     rigids: &[&dyn Rigid],
     touch: &Touch<D>,
 ) -> Vector<f64, D> {
-    let body = &bodies[touch.sides.0];
-    let own = &body.surface[touch.memory.point as usize].weights;
-    let velocity = body.interior.at(own, &body.interior.velocities);
-    velocity
-        - match (touch.sides.1, &touch.weights) {
-            (Some(b), Some(weights)) => bodies[b].interior.at(weights, &bodies[b].interior.velocities),
-            _ => Vector::of(rigids[touch.rigid].velocity(touch.at.space())),
-        }
+    let of =
+        |body: &Deforming<'_, D>, weights: &Weights<D>| body.interior.at(weights, &body.interior.velocities);
+    let body = &bodies[touch.side];
+    let own = of(body, &body.surface[touch.memory.point as usize].weights);
+    own - match &touch.met {
+        Met::Deforming(b, weights) => of(&bodies[*b], weights),
+        Met::Rigid(r) => Vector::of(rigids[*r].velocity(touch.at.space())),
+    }
 }

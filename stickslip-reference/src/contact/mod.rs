@@ -24,14 +24,15 @@ mod near;
 #[cfg(test)]
 mod tests;
 
-pub use act::{press, relative_velocity, slip};
-pub use friction::{Friction, FrictionMemory};
+pub use act::{press, slip};
+pub use friction::Friction;
 pub use look::{Seen, look};
 pub use near::{Partner, find};
 
 use crate::interior::Interior;
 use crate::surface::SurfacePoint;
 use serde::{Deserialize, Serialize};
+use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::geometry::{Shape, SignedDistance};
 use stickslip_mechanics::tensor::Vector;
 
@@ -90,10 +91,10 @@ pub struct Memory {
 pub struct Touch<const D: usize> {
     /// What it is known by.
     pub memory: Memory,
-    /// Places of the bodies in the lists of those that deform; none of a rigid partner.
-    pub sides: (usize, Option<usize>),
-    /// Place of a rigid partner in its list.
-    pub rigid: usize,
+    /// Place of the body in the list of those that deform.
+    pub side: usize,
+    /// Its partner.
+    pub met: Met<D>,
     /// Where it is [m].
     pub at: Vector<f64, D>,
     /// Normal, out of the partner.
@@ -108,8 +109,17 @@ pub struct Touch<const D: usize> {
     pub traction: Vector<f64, D>,
     /// Work that friction took in the step [J].
     pub friction: f64,
-    /// Functions of the partner there.
-    pub weights: Option<stickslip_mechanics::geometry::form::Weights<D>>,
+    /// Velocity along the surface, against the partner's, that moves the bodies in the step [m/s].
+    pub slip: Vector<f64, D>,
+}
+
+/// What a point of a surface touches.
+#[derive(Clone, Copy, Debug)]
+pub enum Met<const D: usize> {
+    /// A body that deforms, by its place in the list of these, and its functions there.
+    Deforming(usize, Weights<D>),
+    /// A rigid body, by its place in the list of these.
+    Rigid(usize),
 }
 
 impl<const D: usize> Touch<D> {

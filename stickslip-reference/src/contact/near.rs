@@ -1,9 +1,11 @@
 //! Which points of surfaces touch which partners.
 
-use super::{Deforming, Memory, Rigid, STIFFNESS, Touch, look};
+use super::{Deforming, Memory, Met, Rigid, STIFFNESS, Touch, look};
+use crate::surface::SurfacePoint;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use stickslip_mechanics::geometry::Shape;
+use stickslip_mechanics::geometry::form::digits;
 use stickslip_mechanics::tensor::Vector;
 
 /// A pair of bodies that may touch: the second deforms, or is rigid.
@@ -36,41 +38,46 @@ pub fn find<const D: usize>(
         near[b].push(a);
     }
     (near.iter_mut().enumerate()).filter(|(a, _)| may_fold(&bodies[*a])).for_each(|(a, near)| near.push(a));
-    let of_body = |a: usize| {
-        let partners: Vec<usize> =
-            near[a].iter().copied().filter(|&b| meet(a, Partner::Deforming(b))).collect();
+    let partners = |a: usize| {
+        let deforming = near[a].iter().copied().filter(|&b| meet(a, Partner::Deforming(b))).collect();
         let close = |(_, rigid): &(usize, &&dyn Rigid)| overlap(&boxes[a], &rigid.bounds().map(Vector::of));
         let rigid = rigids.iter().enumerate().filter(close).map(|(r, _)| r);
-        let rigid: Vec<usize> = rigid.filter(|&r| meet(a, Partner::Rigid(r))).collect();
-        touches_of((bodies, a), (&partners, &boxes), (&rigid, rigids), known)
+        (deforming, rigid.filter(|&r| meet(a, Partner::Rigid(r))).collect())
+    };
+    let partners: Vec<(Vec<usize>, Vec<usize>)> = (0..bodies.len()).map(partners).collect();
+    // Where the points are of bodies that may touch anything.
+    let places = |(body, (deforming, rigid)): (&Deforming<'_, D>, &(Vec<usize>, Vec<usize>))| {
+        let of = |point: &SurfacePoint<D>| body.interior.at(&point.weights, &body.interior.places);
+        let asked = !(deforming.is_empty() && rigid.is_empty());
+        if asked { body.surface.iter().map(of).collect() } else { Vec::new() }
+    };
+    let places: Vec<Vec<Vector<f64, D>>> = bodies.par_iter().zip(&partners).map(places).collect();
+    let of_body = |a: usize| {
+        let (deforming, rigid) = &partners[a];
+        touches_of((bodies, &places, a), (deforming, &boxes), (rigid, rigids), known)
     };
     let mut touches: Vec<_> = (0..bodies.len()).into_par_iter().map(of_body).collect::<Vec<_>>().concat();
     touches.sort_by_key(|touch| key(&touch.memory));
     touches
 }
 
-/// The points of a body's surface that touch any of these partners.
+/// The points of a body's surface, at these places, that touch any of these partners.
 fn touches_of<const D: usize>(
-    (bodies, a): (&[Deforming<'_, D>], usize),
+    (bodies, places, a): (&[Deforming<'_, D>], &[Vec<Vector<f64, D>>], usize),
     (partners, boxes): (&[usize], &[[Vector<f64, D>; 2]]),
     (rigid, rigids): (&[usize], &[&dyn Rigid]),
     known: &[Memory],
 ) -> Vec<Touch<D>> {
     let mut touches = Vec::new();
-    if partners.is_empty() && rigid.is_empty() {
-        return touches;
-    }
-    let body = &bodies[a];
-    let grids: Vec<Neighbours<D>> =
-        partners.iter().map(|&b| Neighbours::new(&bodies[b], &boxes[a])).collect();
-    for (number, point) in body.surface.iter().enumerate() {
-        let at = body.interior.at(&point.weights, &body.interior.places);
+    let grid = |&b: &usize| Neighbours::new(&places[b], bodies[b].interior.form.cell, &boxes[a]);
+    let grids: Vec<Neighbours<D>> = partners.iter().map(grid).collect();
+    for (number, &at) in places[a].iter().enumerate() {
         let seen = Point { bodies, a, number, at };
         for (&b, grid) in partners.iter().zip(&grids) {
             if inside(&boxes[b], at) {
                 // What is beside it is no partner.
-                let grid = (grid, (a == b).then_some(point.place));
-                touches.extend(seen.in_body(b, grid, known));
+                let own = (a == b).then_some(bodies[a].surface[number].place);
+                touches.extend(seen.in_body(b, (grid, own), known));
             }
         }
         touches.extend(rigid.iter().filter_map(|&r| seen.in_rigid((r, rigids[r]), known)));
@@ -133,17 +140,39 @@ impl<const D: usize> Point<'_, '_, D> {
         known.binary_search_by_key(&key_here, key).ok().map(|place| known[place])
     }
 
-    fn memory(&self, partner: usize, known: &[Memory], place: [f64; 3]) -> Memory {
-        let before = self.remembered(partner, known);
+    /// What a point that touches for the first time has to remember.
+    fn fresh(&self, partner: usize) -> Memory {
         Memory {
             body: self.bodies[self.a].body as u32,
             point: self.number as u32,
             partner: partner as u32,
-            place,
-            remembered: before.map_or(-1.0, |before| before.remembered),
-            stored: before.map_or([0.0; 3], |before| before.stored),
-            borne: before.map_or([0.0; 3], |before| before.borne),
-            speed: before.map_or(0.0, |before| before.speed),
+            place: [0.0; 3],
+            remembered: -1.0,
+            stored: [0.0; 3],
+            borne: [0.0; 3],
+            speed: 0.0,
+        }
+    }
+
+    /// A point that touches, with the share of its area on which it does.
+    fn touch(
+        &self,
+        (memory, met): (Memory, Met<D>),
+        (normal, gap): (Vector<f64, D>, f64),
+        (share, stiffness): (f64, [f64; 2]),
+    ) -> Touch<D> {
+        Touch {
+            memory,
+            side: self.a,
+            met,
+            at: self.at,
+            normal,
+            gap,
+            area: share * self.bodies[self.a].surface[self.number].area,
+            stiffness,
+            traction: Vector::ZERO,
+            friction: 0.0,
+            slip: Vector::ZERO,
         }
     }
 
@@ -157,7 +186,8 @@ impl<const D: usize> Point<'_, '_, D> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let apart = APART * body.interior.form.cell;
         let is_apart = |place: Vector<f64, D>| own.is_none_or(|own| (place - own).norm() > apart);
-        let start = match self.remembered(partner.body, known) {
+        let before = self.remembered(partner.body, known);
+        let start = match before {
             Some(before) => Vector::of(before.place),
             None => {
                 partner.surface[grid.nearest(self.at, |point| is_apart(partner.surface[point].place))?].place
@@ -169,40 +199,22 @@ impl<const D: usize> Point<'_, '_, D> {
         }
         let (h, k) = (body.interior.form.cell, partner.interior.form.cell);
         let of = |modulus: usize| STIFFNESS / (h / body.moduli[modulus] + k / partner.moduli[modulus]);
-        Some(Touch {
-            memory: self.memory(partner.body, known, seen.place.space()),
-            sides: (self.a, Some(b)),
-            rigid: 0,
-            at: self.at,
-            normal: seen.normal,
-            gap: seen.distance,
-            area: 0.5 * body.surface[self.number].area,
-            stiffness: [of(0), of(1)],
-            traction: Vector::ZERO,
-            friction: 0.0,
-            weights: Some(seen.weights),
-        })
+        let before = before.unwrap_or_else(|| self.fresh(partner.body));
+        let memory = Memory { place: seen.place.space(), ..before };
+        // The partner looks back with the other half.
+        let layer = (0.5, [of(0), of(1)]);
+        Some(self.touch((memory, Met::Deforming(b, seen.weights)), (seen.normal, seen.distance), layer))
     }
 
     fn in_rigid(&self, (r, rigid): (usize, &dyn Rigid), known: &[Memory]) -> Option<Touch<D>> {
         let level = rigid.level(self.at.space());
-        let body = &self.bodies[self.a];
         if level.distance.is_nan() || level.distance >= 0.0 {
             return None;
         }
-        Some(Touch {
-            memory: self.memory(rigid.body(), known, [0.0; 3]),
-            sides: (self.a, None),
-            rigid: r,
-            at: self.at,
-            normal: Vector::of(level.gradient),
-            gap: level.distance,
-            area: body.surface[self.number].area,
-            stiffness: body.moduli.map(|modulus| STIFFNESS * modulus / body.interior.form.cell),
-            traction: Vector::ZERO,
-            friction: 0.0,
-            weights: None,
-        })
+        let body = &self.bodies[self.a];
+        let memory = self.remembered(rigid.body(), known).unwrap_or_else(|| self.fresh(rigid.body()));
+        let layer = (1.0, body.moduli.map(|modulus| STIFFNESS * modulus / body.interior.form.cell));
+        Some(self.touch((memory, Met::Rigid(r)), (Vector::of(level.gradient), level.distance), layer))
     }
 }
 
@@ -213,13 +225,13 @@ struct Neighbours<const D: usize> {
 }
 
 impl<const D: usize> Neighbours<D> {
-    fn new(body: &Deforming<'_, D>, around: &[Vector<f64, D>; 2]) -> Self {
-        let width = NEAR * body.interior.form.cell;
+    /// Of points at these places.
+    fn new(places: &[Vector<f64, D>], cell: f64, around: &[Vector<f64, D>; 2]) -> Self {
+        let width = NEAR * cell;
         let mut points: HashMap<_, Vec<_>> = HashMap::new();
         let reach = Vector([width; D]);
         let around = [around[0] - reach, around[1] + reach];
-        for (number, point) in body.surface.iter().enumerate() {
-            let at = body.interior.at(&point.weights, &body.interior.places);
+        for (number, &at) in places.iter().enumerate() {
             if inside(&around, at) {
                 points.entry(Self::cell(at, width)).or_default().push((number as u32, at));
             }
@@ -236,7 +248,8 @@ impl<const D: usize> Neighbours<D> {
         let here = Self::cell(at, self.width);
         let mut best: Option<(f64, u32)> = None;
         for number in 0..3_usize.pow(D as u32) {
-            let cell = std::array::from_fn(|a| here[a] + (number / 3_usize.pow(a as u32) % 3) as i32 - 1);
+            let step = digits(number, [3; D]);
+            let cell = std::array::from_fn(|a| here[a] + step[a] as i32 - 1);
             for &(point, x) in self.points.get(&cell).into_iter().flatten() {
                 let square = (x - at).dot(x - at);
                 if square < self.width * self.width

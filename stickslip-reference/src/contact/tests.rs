@@ -1,6 +1,7 @@
 use super::*;
 use crate::interior::tests::{Alone, DENSITY, elastic, p_wave};
 use crate::surface::points;
+use stickslip_mechanics::friction::FrictionMemory;
 
 /// A rigid half-space that does not move.
 struct Ground<const D: usize> {
@@ -83,7 +84,7 @@ impl<const D: usize> Meeting<D> {
         let mut touches = find(&bodies, &grounds, &self.known, &|_, _| true);
         press(&mut bodies, &mut touches, &rule);
         bodies.iter_mut().for_each(|body| body.interior.accelerate(dt, gravity));
-        self.known = slip(&bodies, &grounds, (&touches, dt), &rule);
+        self.known = slip(&bodies, &grounds, (&mut touches, dt), &rule);
         bodies.iter_mut().for_each(|body| body.interior.advance(dt));
         drop(bodies);
         self.bodies.iter_mut().for_each(|(alone, ..)| alone.strain(dt));
@@ -231,7 +232,7 @@ fn a_block_rests_on_a_block_under_an_even_pressure() {
             let load: f64 = meeting
                 .touches
                 .iter()
-                .filter(|t| t.sides.1.is_some())
+                .filter(|t| matches!(t.met, Met::Deforming(..)))
                 .map(|t| t.area * t.pressure() * t.normal[1].abs())
                 .sum();
             mean = [mean[0] + load, mean[1] + 1.0];
@@ -342,7 +343,7 @@ fn a_dragged_block_rubs_by_its_coefficient() {
                 let interior = &mut alone.interior;
                 let each = Vector([force / face.len() as f64, 0.0]);
                 weights.each(|k, value, _| {
-                    interior.forces[weights.node + interior.offsets[k] as usize] += each * value
+                    interior.forces[weights.node + interior.form.offsets[k] as usize] += each * value
                 });
             }
             meeting.step(0.4);

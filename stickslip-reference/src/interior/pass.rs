@@ -109,7 +109,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 let verbs = Verbs { update_stress: true, ..Verbs::default() };
                 Members::copied::<V>(&columns, &index[..count], &verbs, &mut copies)
             };
-            if self.group(&constants, (number, cell), &members).is_err() {
+            if self.lanes(&constants, (number, cell, 0), &members).is_err() {
                 self.find_fault(number, cell);
             }
         }
@@ -132,16 +132,6 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         }
     }
 
-    #[inline(always)]
-    fn group<V: Lanes<Real = T>>(
-        &mut self,
-        constants: &Constants<V>,
-        (number, cell): (usize, &Cell),
-        members: &Members<'_, T, D>,
-    ) -> Result<(), FaultKind> {
-        self.lanes(constants, (number, cell, 0), members)
-    }
-
     /// The particles of a cell from a lane of its table on.
     #[inline(always)]
     fn lanes<V: Lanes<Real = T>>(
@@ -156,7 +146,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         let (mut own, mut place, mut velocity) =
             (Matrix::<V>::ZERO, Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
         for k in 0..Form::<D>::NODES {
-            let at = node + self.interior.offsets[k] as usize;
+            let at = node + self.interior.form.offsets[k] as usize;
             let (x, v) = (self.interior.places[at], self.interior.velocities[at]);
             // SAFETY: a table has as many numbers as any machine has lanes; a single lane reads one.
             let entry =
@@ -266,7 +256,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                     force[i] = pulls.0[i][a].times_plus(entry(1 + a), force[i]);
                 }
             }
-            let at = node + self.interior.offsets[k] as usize;
+            let at = node + self.interior.form.offsets[k] as usize;
             let forces = &mut self.interior.forces[at].0;
             forces.iter_mut().zip(sums(force.0)).for_each(|(force, sum)| *force += sum.f64());
         }

@@ -31,6 +31,7 @@ mod suggestion;
 mod units;
 mod was_read;
 
+pub use crate::friction::FrictionMemory;
 pub use crate::scheme::{BasisKind, Face, Interior, Transfer, VolumeChange};
 pub use body_list::BodyList;
 pub use course::{Change, Changes, Course, LEAST_PART, MOST_PIECES, Passing, TOLERANCE};
@@ -473,22 +474,6 @@ pub struct ContactRule {
     /// How bodies that overlap at the start are pressed apart; `None`: they are not, and the overlap stays as it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub press: Option<Press>,
-}
-
-/// Friction that remembers pressure: the strength of a sliding surface follows it with a delay.
-///
-/// ```text
-/// |tau| <= mu S,   dS/dt = -(|slip speed| + V_0) / L (S - p)        Prakash and Clifton (1993)
-/// ```
-/// p: pressure, S: what of it the surface remembers [Pa]; a point that comes into contact begins with S = p. With
-/// friction that follows at once, a body that slides slowly on a stiffer one flutters at every wavelength (Ranjith and
-/// Rice 2001, J. Mech. Phys. Solids 49).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FrictionMemory {
-    /// L, the slip over which pressure is forgotten [m].
-    pub length: f64,
-    /// V_0, the speed at which surfaces forget that do not slip [m/s].
-    pub speed: f64,
 }
 
 /// An interference fit: surfaces grow from no overlap to all of it.

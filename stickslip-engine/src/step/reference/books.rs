@@ -2,12 +2,12 @@
 
 use crate::contact::BlockSums;
 use crate::tensor::{Vector, cross};
-use stickslip_reference::contact::{Deforming, Rigid, Touch, relative_velocity};
+use stickslip_reference::contact::{Met, Rigid, Touch};
 
 /// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies.
 pub(super) fn book<const D: usize>(
     all: &mut Vec<BlockSums>,
-    (bodies, rigid): (&[Deforming<'_, D>], &[&dyn Rigid]),
+    rigid: &[&dyn Rigid],
     (touches, dt): (&[Touch<D>], f64),
 ) {
     all.clear();
@@ -18,7 +18,7 @@ pub(super) fn book<const D: usize>(
             all.insert(place, BlockSums { bodies: pair, ..BlockSums::default() });
             place
         });
-        add(&mut all[place], (touch, dt), body < partner, (bodies, rigid));
+        add(&mut all[place], (touch, dt), body < partner, rigid);
     }
 }
 
@@ -26,7 +26,7 @@ fn add<const D: usize>(
     sums: &mut BlockSums,
     (touch, dt): (&Touch<D>, f64),
     is_first: bool,
-    (bodies, rigid): (&[Deforming<'_, D>], &[&dyn Rigid]),
+    rigid: &[&dyn Rigid],
 ) {
     let at = touch.at.space();
     let push = touch.normal * (touch.area * touch.pressure() * dt);
@@ -47,11 +47,9 @@ fn add<const D: usize>(
     sums.friction += touch.friction;
     sums.spread.add(touch.area, at);
     sums.gap += touch.area * touch.gap;
-    let velocity = relative_velocity(bodies, rigid, touch);
-    let slip = velocity - touch.normal * velocity.dot(touch.normal);
-    sums.slip += touch.area * if touch.friction > 0.0 { slip.norm() * dt } else { 0.0 };
-    if touch.sides.1.is_none() {
-        let speed = Vector::<f64, D>::of(rigid[touch.rigid].velocity(at));
+    sums.slip += touch.area * if touch.friction > 0.0 { touch.slip.norm() * dt } else { 0.0 };
+    if let Met::Rigid(r) = touch.met {
+        let speed = Vector::<f64, D>::of(rigid[r].velocity(at));
         sums.work += (push + rub).dot(speed);
     }
     sums.nodes += 1;

@@ -69,11 +69,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }
         }
         for point in &felt.points {
-            let nodes = &mut self.state.references.nodes[point.place];
-            let (forces, offsets) = (&mut nodes.forces, &nodes.offsets);
-            let weights = &point.weights;
-            weights
-                .each(|k, value, _| forces[weights.node + offsets[k] as usize] += point.felt.force * value);
+            self.state.references.nodes[point.place].push(&point.weights, point.felt.force);
         }
         Ok(felt)
     }
@@ -123,7 +119,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 let inertia = &mut all.bodies[place].inertia;
                 inertia.resize(nodes.masses.len(), Vector::ZERO);
                 weights.each(|k, value, _| {
-                    inertia[weights.node + nodes.offsets[k] as usize] += felt.inertia * value.abs();
+                    inertia[weights.node + nodes.form.offsets[k] as usize] += felt.inertia * value.abs();
                 });
             }
             let (at, measure) = (particle.position, point.measure);

@@ -26,7 +26,7 @@ use crate::geometry::form::{Form, NoForm};
 use crate::grid::Disjoint;
 use crate::lanes::{Laned, Processor};
 use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
-use crate::scene::{self, ContactLaw, Interior as Kind, Problem, Scene};
+use crate::scene::{ContactLaw, Interior as Kind, Problem, Scene};
 use crate::tensor::{Vector, cross};
 use crate::threads::each;
 use rigid::RigidBody;
@@ -35,7 +35,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::cells::Table;
 use stickslip_reference::contact::{
-    Deforming, Friction, FrictionMemory, Memory, Partner, Rigid, Touch, find, press, slip,
+    Deforming, Friction, Memory, Met, Partner, Rigid, Touch, find, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -178,16 +178,19 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 state.damping += damp(body.interior, &before, |v, start| damping.damped(v, start, dt));
             }
         }
-        books::book(&mut workspace.reference_touches, (&bodies, &rigid), (&touches, dt));
         let layers = &mut state.references.layers;
         layers.clear();
         layers.resize(bodies.len(), 0.0);
         for touch in &touches {
-            let sides = [Some(touch.sides.0), touch.sides.1];
-            let share = touch.energy() / sides.iter().flatten().count() as f64;
-            sides.iter().flatten().for_each(|&side| layers[side] += share);
+            match touch.met {
+                Met::Deforming(b, _) => {
+                    [touch.side, b].iter().for_each(|&side| layers[side] += 0.5 * touch.energy())
+                }
+                Met::Rigid(_) => layers[touch.side] += touch.energy(),
+            }
         }
-        state.references.touching = slip(&bodies, &rigid, (&touches, dt), &rule);
+        state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
+        books::book(&mut workspace.reference_touches, &rigid, (&touches, dt));
         bodies.into_iter().for_each(|body| body.interior.advance(dt));
         self.account_reference_loads(&loads, dt);
         Ok(())
@@ -317,8 +320,6 @@ fn friction<T: Laned, const D: usize>(rules: &Rules<T>, touch: &Touch<D>) -> Fri
         at_rest: double.at_rest,
         kinetic: double.kinetic,
         decay_speed: double.decay_speed,
-        memory: rule
-            .friction_memory
-            .map(|scene::FrictionMemory { length, speed }| FrictionMemory { length, speed }),
+        memory: rule.friction_memory,
     }
 }

@@ -31,6 +31,8 @@ pub struct Form<const D: usize> {
     pub frame: Frame<D>,
     /// Nodes along each axis.
     pub counts: [usize; D],
+    /// From a node to those of the cell whose first it is, in the order of [`Weights::each`].
+    pub offsets: Vec<u32>,
     /// Cells that hold particles, and their particles, one after the other.
     pub cells: Vec<Cell>,
     /// Undeformed places of the particles [m].
@@ -101,12 +103,14 @@ impl<const D: usize> Form<D> {
             cell,
             frame,
             counts,
+            offsets: Vec::new(),
             cells: Vec::new(),
             places: Vec::new(),
             volumes: Vec::new(),
             node_volumes: Vec::new(),
             followers: Followers::default(),
         };
+        form.offsets = (0..Self::NODES).map(|k| form.node(digits(k, [WIDTH; D])) as u32).collect();
         form.fill(shape);
         if form.places.is_empty() {
             return Err(NoForm::Thin(0.0));
@@ -134,25 +138,14 @@ impl<const D: usize> Form<D> {
     }
 
     /// Numbers of a node along the axes.
-    pub fn numbers(&self, mut node: usize) -> [usize; D] {
-        let mut at = [0; D];
-        for a in (0..D).rev() {
-            at[a] = node % self.counts[a];
-            node /= self.counts[a];
-        }
-        at
+    pub fn numbers(&self, node: usize) -> [usize; D] {
+        digits(node, self.counts)
     }
 
     /// Undeformed place of a node [m].
     pub fn node_place(&self, node: usize) -> Vector<f64, D> {
         let at = self.numbers(node);
         self.frame.place(Vector::from_fn(|a| at[a] as f64), self.cell)
-    }
-
-    /// From a node to those of the cell whose first it is, in the order of [`Weights::each`].
-    pub fn offsets(&self) -> Vec<u32> {
-        let number = |k: usize, a: usize| k / WIDTH.pow((D - 1 - a) as u32) % WIDTH;
-        (0..Self::NODES).map(|k| self.node(std::array::from_fn(|a| number(k, a))) as u32).collect()
     }
 
     /// The functions at an undeformed place; beyond the grid those of the nearest cell go on.
@@ -176,13 +169,9 @@ impl<const D: usize> Form<D> {
         let place = |at: [f64; 3]| frame.place(Vector::<f64, D>::of(at), 1.0).space();
         let whole = side.powi(D as i32);
         let mut is_whole = Vec::new();
-        let mut at = [0; D];
-        for number in 0..self.counts.iter().map(|count| count - (WIDTH - 1)).product::<usize>() {
-            let mut rest = number;
-            for a in (0..D).rev() {
-                at[a] = rest % (self.counts[a] - (WIDTH - 1));
-                rest /= self.counts[a] - (WIDTH - 1);
-            }
+        let cells = self.counts.map(|count| count - (WIDTH - 1));
+        for number in 0..cells.iter().product::<usize>() {
+            let at = digits(number, cells);
             let middle = std::array::from_fn(|a| if a < D { (at[a] as f64 + 1.0) * cell } else { 0.0 });
             let distance = shape.distance(place(middle), D);
             if distance >= 0.5 * cell * (D as f64).sqrt() {
@@ -190,9 +179,9 @@ impl<const D: usize> Form<D> {
             }
             let first = self.places.len();
             for sub in 0..PER_SIDE.pow(D as u32) {
+                let numbers = digits(sub, [PER_SIDE; D]);
                 let low = std::array::from_fn(|a| {
-                    let number = if a < D { sub / PER_SIDE.pow((D - 1 - a) as u32) % PER_SIDE } else { 0 };
-                    if a < D { (at[a] as f64 + 0.5) * cell + number as f64 * side } else { 0.0 }
+                    if a < D { (at[a] as f64 + 0.5) * cell + numbers[a] as f64 * side } else { 0.0 }
                 });
                 let part = part(shape, &place, (low, side), D);
                 if part.volume > LEAST_PART * whole {
@@ -226,7 +215,6 @@ impl<const D: usize> Form<D> {
     /// Nodes whose functions the shape reaches.
     fn reached(&self, shape: &Shape) -> Vec<bool> {
         let mut reached = vec![false; self.nodes()];
-        let offsets = self.offsets();
         let far = self.cell * (0.5 * (D as f64).sqrt() + 1e-6);
         for node in 0..self.nodes() {
             let at = self.numbers(node);
@@ -235,7 +223,7 @@ impl<const D: usize> Form<D> {
             }
             let middle = self.frame.place(Vector::from_fn(|a| at[a] as f64 + 1.0), self.cell);
             if shape.distance(middle.space(), D) < far {
-                offsets.iter().for_each(|&offset| reached[node + offset as usize] = true);
+                self.offsets.iter().for_each(|&offset| reached[node + offset as usize] = true);
             }
         }
         reached
@@ -244,14 +232,24 @@ impl<const D: usize> Form<D> {
     /// Volume that moves with each node, and who follows whom.
     fn share_out(&mut self, reached: &[bool]) -> Result<(), NoForm> {
         let mut own = vec![0.0; self.nodes()];
-        let offsets = self.offsets();
         for (place, volume) in self.places.iter().zip(&self.volumes) {
             let weights = self.weights(*place);
-            weights.each(|k, value, _| own[weights.node + offsets[k] as usize] += volume * value);
+            weights.each(|k, value, _| own[weights.node + self.offsets[k] as usize] += volume * value);
         }
         (self.node_volumes, self.followers) = outer::follow(self, &own, reached)?;
         Ok(())
     }
+}
+
+/// Numbers along the axes of what has a number among so many along each: the last axis runs first.
+#[inline(always)]
+pub fn digits<const D: usize>(mut number: usize, counts: [usize; D]) -> [usize; D] {
+    let mut at = [0; D];
+    for a in (0..D).rev() {
+        at[a] = number % counts[a];
+        number /= counts[a];
+    }
+    at
 }
 
 impl<const D: usize> Weights<D> {
@@ -259,7 +257,7 @@ impl<const D: usize> Weights<D> {
     #[inline(always)]
     pub fn each(&self, mut f: impl FnMut(usize, f64, [f64; D])) {
         for k in 0..WIDTH.pow(D as u32) {
-            let number: [usize; D] = std::array::from_fn(|a| k / WIDTH.pow((D - 1 - a) as u32) % WIDTH);
+            let number = digits(k, [WIDTH; D]);
             let value = (0..D).map(|a| self.axes[a].value[number[a]]).product();
             let slope =
                 std::array::from_fn(|b| {

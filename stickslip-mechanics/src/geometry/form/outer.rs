@@ -1,7 +1,7 @@
 //! Nodes of little mass follow those near them: extended B-splines (Höllig, Reif and Wipper 2001).
 
 use super::linear::solve;
-use super::{Form, NoForm};
+use super::{Form, NoForm, digits};
 use crate::tensor::Vector;
 
 /// Nodes with less than this part of a cell's mass follow others. A plain node of tiny mass is thrown by cells by a
@@ -107,8 +107,7 @@ fn near<const D: usize>(
     let side = (2 * most + 1) as usize;
     let mut found = Vec::new();
     for number in 0..side.pow(D as u32) {
-        let arm: [isize; D] =
-            std::array::from_fn(|a| (number / side.pow((D - 1 - a) as u32) % side) as isize - most);
+        let arm = digits(number, [side; D]).map(|n| n as isize - most);
         let square = arm.iter().map(|a| a * a).sum::<isize>() as f64;
         let there: [isize; D] = std::array::from_fn(|a| at[a] as isize + arm[a]);
         if square > reach * reach || (0..D).any(|a| there[a] < 0 || there[a] >= form.counts[a] as isize) {

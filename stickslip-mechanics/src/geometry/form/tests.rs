@@ -11,7 +11,7 @@ fn check<const D: usize>(shape: &Shape, cell: f64) -> Form<D> {
     assert!((volume / moments.volume - 1.0).abs() < 1e-12, "{volume} for {}", moments.volume);
     let masses: f64 = form.node_volumes.iter().sum();
     assert!((masses / moments.volume - 1.0).abs() < 1e-9, "{masses}");
-    let offsets = form.offsets();
+    let offsets = &form.offsets;
     // Functions sum to one, and places follow from those of the nodes, by masters alone as well.
     for place in &form.places {
         let weights = form.weights(*place);
