@@ -1,8 +1,8 @@
 //! The kernels of Stickslip: all that is done to particles several at a time, compiled for each basis, dimension,
 //! precision and processor, and behind one table of functions ([`Kernels`]).
 //!
-//! What calls them, the step and contact at the nodes, is in the engine: a change there compiles none of this again. The
-//! rooms below are in reading order: each uses only rooms above it.
+//! What calls them, the step and contact at the nodes, is in the engine: a change there compiles none of this again.
+//! The rooms below are in reading order: each uses only rooms above it.
 
 pub use stickslip_mechanics::{column, geometry, material, number, scheme, tensor};
 

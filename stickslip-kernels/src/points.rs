@@ -16,8 +16,8 @@ pub fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, drawn: &[f64; 3])
 pub type NodesOf<T, const D: usize> =
     fn(&Lattice<T, D>, (&Particle<T, D>, &Matrix<T>), &[f64; 3], &mut dyn FnMut([i32; D], [T; 2]));
 
-/// Takes the nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i [-];
-/// the point was drawn at `drawn` from the particle.
+/// Takes the nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i
+/// [-]; the point was drawn at `drawn` from the particle.
 pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
     (particle, edges): (&Particle<T, D>, &Matrix<T>),

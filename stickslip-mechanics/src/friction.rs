@@ -3,8 +3,8 @@
 use crate::number::Real;
 use serde::{Deserialize, Serialize};
 
-/// The coefficient of surfaces that slip at a speed [m/s], from those at rest and in motion and the speed s_c over which
-/// the one becomes the other (Oden and Martins 1985):
+/// The coefficient of surfaces that slip at a speed [m/s], from those at rest and in motion and the speed s_c over
+/// which the one becomes the other (Oden and Martins 1985):
 ///
 /// ```text
 /// mu(s) = mu_k + (mu_s - mu_k) exp(-s / s_c)        s_c = 0: mu_k

@@ -74,7 +74,8 @@ impl<const D: usize> Interior<D> {
         self.follow();
     }
 
-    /// The same of nodes that supports hold, with inertia of theirs beside its own [kg]; none where there is no support.
+    /// The same of nodes that supports hold, with inertia of theirs beside its own [kg]; none where there is no
+    /// support.
     pub fn accelerate_with(&mut self, dt: f64, gravity: Vector<f64, D>, inertia: &[Vector<f64, D>]) {
         if inertia.is_empty() {
             return self.accelerate(dt, gravity);

@@ -9,9 +9,10 @@
 //! ```
 //!
 //! Particles are quadrature points: a part of the shape each, with its volume and its centroid, and weights that never
-//! change ([`stickslip_mechanics::geometry::form`] has the grid). F follows from places and gathers no error; one velocity does everything, so nothing is filtered; and what
-//! acts at a point of the surface acts on the nodes through the functions of that point. Total Lagrangian MPM: de Vaucorbeil
-//! et al. (2020); nodes of little mass follow others as in extended B-splines: Höllig et al. (2001).
+//! change ([`stickslip_mechanics::geometry::form`] has the grid). F follows from places and gathers no error; one
+//! velocity does everything, so nothing is filtered; and what acts at a point of the surface acts on the nodes through
+//! the functions of that point. Total Lagrangian MPM: de Vaucorbeil et al. (2020); nodes of little mass follow others
+//! as in extended B-splines: Höllig et al. (2001).
 //!
 //! The rooms below are in reading order: each uses only rooms above it.
 

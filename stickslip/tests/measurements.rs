@@ -244,9 +244,9 @@ fn probes_are_exact_for_what_is_linear_up_to_the_surface() {
 
 /// Lame's thick cylinder, a quarter of it with eight cells across the wall: at the bore the radial stress is -p and the
 /// hoop stress p (b^2 + a^2) / (b^2 - a^2), at the outer surface 0 and 2 p a^2 / (b^2 - a^2). Source: Timoshenko and
-/// Goodier (1970), Theory of Elasticity, section 28. Within 12 % of p at the bore, where the particles themselves are off
-/// by about half of that and stress falls as 1/r^2 over a cell (the mean over the particles within two cells was off by
-/// 17 %), and 5 % outside.
+/// Goodier (1970), Theory of Elasticity, section 28. Within 12 % of p at the bore, where the particles themselves are
+/// off by about half of that and stress falls as 1/r^2 over a cell (the mean over the particles within two cells was
+/// off by 17 %), and 5 % outside.
 #[test]
 fn probes_at_the_bore_of_a_cylinder_have_lames_stress() {
     let p = 1e-3;

@@ -6,8 +6,8 @@
 //! ```text
 //! W = dt g . sum m (v^0 + v^1) / 2     g: the mean over the step
 //! ```
-//! It is what its impulse dt m g adds to the kinetic energy, a pulse within one step too. The way of a step, v^1 dt, would
-//! make that up only over many.
+//! It is what its impulse dt m g adds to the kinetic energy, a pulse within one step too. The way of a step, v^1 dt,
+//! would make that up only over many.
 
 use super::Engine;
 use crate::body::Body;

@@ -56,9 +56,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.settings.time.courant * self.settings.lattice.cell.f64() / speed
     }
 
-    /// A step of `dt` from `time` on, shorter where it would take a rigid body of prescribed motion further than a stable
-    /// one of this length should: its speed was another before, by which stable steps go. Where it jumps no step is short
-    /// enough, and one takes it there [s].
+    /// A step of `dt` from `time` on, shorter where it would take a rigid body of prescribed motion further than a
+    /// stable one of this length should: its speed was another before, by which stable steps go. Where it jumps no step
+    /// is short enough, and one takes it there [s].
     pub(super) fn shortened_by_way(&self, time: f64, dt: f64, stable: f64) -> f64 {
         let least = dt.min(LEAST_OF_STABLE * stable);
         let allowed = self.settings.time.courant * self.settings.lattice.cell.f64();

@@ -109,7 +109,8 @@ pub struct Members<'a, T, const D: usize> {
     runs: Option<&'a ParticleRuns>,
 }
 
-/// Columns of particles that do not lie side by side or do not fill the lanes, with room for a register from any lane on.
+/// Columns of particles that do not lie side by side or do not fill the lanes, with room for a register from any lane
+/// on.
 pub struct Copies<T> {
     columns: [[MaybeUninit<Numbers<T>>; 2]; MOST_COLUMNS],
     runs: ParticleRuns,

@@ -199,8 +199,8 @@ impl<T: Real, const D: usize> Visit<'_, T, D> {
         self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
     }
 
-    /// Takes from the field what the pass seeks, and makes room for what it scatters, in a window of so many nodes along
-    /// a side.
+    /// Takes from the field what the pass seeks, and makes room for what it scatters, in a window of so many nodes
+    /// along a side.
     ///
     /// # Safety
     /// Nobody may write to the tile's nodes meanwhile.

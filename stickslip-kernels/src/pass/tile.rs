@@ -1,8 +1,8 @@
 //! A pass over the particles of a tile, several at a time.
 //!
 //! Particles of one cell are taken as many at a time as the processor has lanes, and where cells of the plane have too
-//! few, those of a tile: straight from memory where they lie side by side there and fill the lanes, else by copies. A group with a fault is taken again, one particle at a time,
-//! to find out what is wrong with whom.
+//! few, those of a tile: straight from memory where they lie side by side there and fill the lanes, else by copies. A
+//! group with a fault is taken again, one particle at a time, to find out what is wrong with whom.
 
 use super::group::{Constants, every, group, splat};
 use super::members::{AHEAD, Copies, Members, fetch};

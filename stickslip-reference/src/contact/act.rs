@@ -59,8 +59,8 @@ fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
     }
 }
 
-/// Lets the layer store the slip of the step, by the velocities that move the bodies, and friction remember pressure: what
-/// is known of each point in the next step.
+/// Lets the layer store the slip of the step, by the velocities that move the bodies, and friction remember pressure:
+/// what is known of each point in the next step.
 pub fn slip<const D: usize>(
     bodies: &[Deforming<'_, D>],
     rigids: &[&dyn Rigid],

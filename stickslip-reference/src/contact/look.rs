@@ -32,8 +32,8 @@ const FACING: f64 = -0.3;
 const BACK: f64 = 0.3;
 
 /// What a body is at a place, sought from an undeformed place near it; `toward` is the outward normal of the partner's
-/// surface there: near corners the face counts that looks at it. `None` where the place is far from the body, or no face
-/// of it looks at the partner.
+/// surface there: near corners the face counts that looks at it. `None` where the place is far from the body, or no
+/// face of it looks at the partner.
 pub fn look<const D: usize>(
     (interior, shape): (&Interior<D>, &Shape),
     at: Vector<f64, D>,

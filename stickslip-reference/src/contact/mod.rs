@@ -1,9 +1,9 @@
 //! Where bodies touch, and what they do to each other there.
 //!
 //! Points of a body's surface are looked for in its partner: where the partner was undeformed, and how deep below its
-//! surface. A point that lies inside is pushed out by a layer that stores energy, and held by the same layer in shear as
-//! far as friction bears. What acts at a point acts on the nodes of both bodies by the functions there, so momentum is
-//! kept to round-off, and spin as closely as the place in the partner is known.
+//! surface. A point that lies inside is pushed out by a layer that stores energy, and held by the same layer in shear
+//! as far as friction bears. What acts at a point acts on the nodes of both bodies by the functions there, so momentum
+//! is kept to round-off, and spin as closely as the place in the partner is known.
 //!
 //! ```text
 //! x(X_b) = q                        q: the point, X_b: its place in the partner
@@ -13,9 +13,9 @@
 //! tau = -k_t s,  |tau| <= mu p      s: slip that the layer stores, ds/dt = u_t, k_t: the same of shear moduli
 //! f_I += N_I(X) A (p n + tau)       A: undeformed area of the point; half of it where the partner looks back
 //! ```
-//! Forces that follow from places alone keep energy, and need no solution for all points together; what friction takes is
-//! what the layer cannot bear. Points of both surfaces, each with half its area: Papadopoulos and Taylor (1992); a layer
-//! in shear: Oden and Pires (1983); friction that remembers pressure: Prakash and Clifton (1993).
+//! Forces that follow from places alone keep energy, and need no solution for all points together; what friction takes
+//! is what the layer cannot bear. Points of both surfaces, each with half its area: Papadopoulos and Taylor (1992); a
+//! layer in shear: Oden and Pires (1983); friction that remembers pressure: Prakash and Clifton (1993).
 
 mod act;
 mod friction;

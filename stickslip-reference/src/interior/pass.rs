@@ -280,7 +280,8 @@ fn sums<V: Lanes>([x, y, z]: [V; 3]) -> [V::Real; 3] {
     sums
 }
 
-/// A bound of |F^-1 n|^2 over all directions, from the inverse of F: the largest sum of magnitudes in a row of F^-1 F^-T.
+/// A bound of |F^-1 n|^2 over all directions, from the inverse of F: the largest sum of magnitudes in a row of F^-1
+/// F^-T.
 #[inline(always)]
 fn squared_shrinking<V: Number, const D: usize>(inverse: &Matrix<V>) -> V {
     let mut most = V::ZERO;

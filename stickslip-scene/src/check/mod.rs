@@ -53,10 +53,10 @@ use crate::scene::{Problem, Scene};
 ///
 /// # Errors
 /// The first of: settings that allow no step, a material that is not stable, a domain whose walls miss the grid, motion
-/// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, what bodies with
-/// interior = "reference" cannot have, a body outside
-/// the domain, one that a periodic domain cannot hold, two bodies in one place, a free rigid body without an end, a
-/// joint far from its bodies, a stress that no deformation gives, a load on nothing, a spring at nothing.
+/// out of the plane, a shape that is not one or holds no particle, a body that deforms and is unbounded, what bodies
+/// with interior = "reference" cannot have, a body outside the domain, one that a periodic domain cannot hold, two
+/// bodies in one place, a free rigid body without an end, a joint far from its bodies, a stress that no deformation
+/// gives, a load on nothing, a spring at nothing.
 pub fn problems(scene: &Scene) -> Result<(), Problem> {
     examine(scene).map(|_| ())
 }

@@ -113,8 +113,8 @@ impl RigidMotion {
         Ok(())
     }
 
-    /// Takes the velocities that are prescribed over a step of `dt` from `time` on [s], the means: they move the body as
-    /// far as it moves in that time. A free body keeps its own.
+    /// Takes the velocities that are prescribed over a step of `dt` from `time` on [s], the means: they move the body
+    /// as far as it moves in that time. A free body keeps its own.
     ///
     /// # Errors
     /// A function from outside that has no answer.
@@ -126,7 +126,8 @@ impl RigidMotion {
         Ok(())
     }
 
-    /// How far a step of `dt` from `time` on takes the centre of a body whose motion a formula or a table prescribes [m].
+    /// How far a step of `dt` from `time` on takes the centre of a body whose motion a formula or a table prescribes
+    /// [m].
     pub fn prescribed_way(&self, time: f64, dt: f64) -> f64 {
         let Drive::Prescribed { velocity, .. } = &self.drive else { return 0.0 };
         // What comes from outside is asked for no more than a step needs.

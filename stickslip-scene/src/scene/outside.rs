@@ -93,7 +93,8 @@ pub struct MeanRoom<'a> {
 }
 
 impl MeanRoom<'_> {
-    /// Finds the means over a step of `dt` from `time` on [s], at points that are here `now` and were there at the start.
+    /// Finds the means over a step of `dt` from `time` on [s], at points that are here `now` and were there at the
+    /// start.
     ///
     /// # Errors
     /// Those of the function.

@@ -37,7 +37,8 @@ impl WasRead {
 
     /// What another one has read otherwise of the same scene, in words: `None` if nothing.
     pub fn differs(&self, other: &WasRead) -> Option<String> {
-        // Whatever the paths are from where each of them stands, the files are the same ones up to the first that differs.
+        // Whatever the paths are from where each of them stands, the files are the same ones up to the first that
+        // differs.
         let file = self.files.iter().zip(&other.files).find_map(|(file, other)| other_than(file, other));
         // Such as a library of mathematics that rounds otherwise.
         let scene =

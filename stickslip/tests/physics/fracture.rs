@@ -126,8 +126,8 @@ fn split(law: &str) -> [f64; 2] {
 ///
 /// Source: Griffith's P = pi D f_t/2 of a line load on what breaks at once. Flats, as here over 16 degrees to either
 /// side, bear 4 % more (Wang et al. 2004), and what softens over E G_f/f_t^2, here 1.3 D, bears more yet. Measured with
-/// ten cells a radius 1.15 by Rankine, with the middle at 0.99 f_t, and 2.05 and 2.11 by modified von Mises; with eight,
-/// as here, 1.24 and 0.99, 2.32 and 2.05.
+/// ten cells a radius 1.15 by Rankine, with the middle at 0.99 f_t, and 2.05 and 2.11 by modified von Mises; with
+/// eight, as here, 1.24 and 0.99, 2.32 and 2.05.
 #[test]
 fn a_disk_that_is_split_breaks_by_rankine_at_its_strength() {
     let [bears, across] = split("criterion = \"rankine\"");

@@ -6,10 +6,10 @@
 //! that grows for a tenth of a second, by a formula and by a table; once more with a constant one, as a number and as a
 //! formula; the looking for rest of a block on a fixed face under gravity that grows.
 //!
-//! Expected: velocities to 1e-10, as steps take the mean of gravity and end where the growth does; the works of a gravity
-//! that may vary are what a constant one takes of the potential energy, to half a step of 2000: the places to which that
-//! belongs are those half a step later; the ledger of works closes to 1e-10; a run that relaxes does not end while
-//! gravity grows.
+//! Expected: velocities to 1e-10, as steps take the mean of gravity and end where the growth does; the works of a
+//! gravity that may vary are what a constant one takes of the potential energy, to half a step of 2000: the places to
+//! which that belongs are those half a step later; the ledger of works closes to 1e-10; a run that relaxes does not end
+//! while gravity grows.
 
 use crate::trial::{RUBBER, run_to, start};
 use stickslip::door::Ledger;

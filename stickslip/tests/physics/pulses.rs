@@ -39,8 +39,8 @@ fn beginnings() -> impl Iterator<Item = f64> {
     (0..25).map(|i| 1e-3 + 7.3e-6 * f64::from(i))
 }
 
-/// A pulse of a peak for 10 us that begins at a time [s]: as a table of a triangle, as a formula that jumps, and smooth;
-/// each with its integral and how near that is met.
+/// A pulse of a peak for 10 us that begins at a time [s]: as a table of a triangle, as a formula that jumps, and
+/// smooth; each with its integral and how near that is met.
 fn pulses(peak: f64, at: f64) -> [(String, f64, f64); 3] {
     let end = at + 1e-5;
     let middle = at + 5e-6;
@@ -162,8 +162,8 @@ fn steps_end_at_rows_and_jumps() {
     assert!((ends.len() as f64) < 3e-3 / usual + 14.0, "{} steps of {usual} s", ends.len());
 }
 
-/// No step is short enough for a jump of a displacement: it is taken in one of a thousandth of the usual length at least,
-/// before which steps are no shorter, so at most a thousand more than usual lead there.
+/// No step is short enough for a jump of a displacement: it is taken in one of a thousandth of the usual length at
+/// least, before which steps are no shorter, so at most a thousand more than usual lead there.
 #[test]
 fn a_rigid_body_that_jumps_neither_stops_nor_stalls_the_run() {
     for jump in [0.02, 0.1, 1.0, 1e3] {

@@ -30,8 +30,8 @@ fn energy(simulation: &dyn Simulation) -> f64 {
     simulation.bodies().iter().map(|body| body.kinetic + body.strain).sum()
 }
 
-/// Two disks meet off centre with friction and part: momentum and spin are kept, and so is the energy with what friction
-/// took.
+/// Two disks meet off centre with friction and part: momentum and spin are kept, and so is the energy with what
+/// friction took.
 #[test]
 fn disks_that_meet_keep_momentum_spin_and_energy() {
     let speed = 0.04 * WAVE;

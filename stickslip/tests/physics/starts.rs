@@ -7,7 +7,8 @@
 //! that is a number; a rigid body on a path by a formula and one by a table.
 //!
 //! Expected: each particle has the velocity of its place to round-off, the bar the energy v_0^2 m / 4 to 1e-3, and
-//! after half a period the reversed velocity at its ends within 3 %; rigid bodies are at u(t) to 1e-12 m after each step.
+//! after half a period the reversed velocity at its ends within 3 %; rigid bodies are at u(t) to 1e-12 m after each
+//! step.
 
 use crate::trial::{mean_where, run_to, start};
 use std::f64::consts::PI;

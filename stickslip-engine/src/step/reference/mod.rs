@@ -71,8 +71,8 @@ pub(crate) struct SavedNodes {
     layer: f64,
 }
 
-/// What of a cell the fastest wave may cross in a step, over what it may where bodies are on the common grid: a body alone
-/// is stable at 0.9 cells, and one in contact at 0.6, where the usual Courant number is 0.4.
+/// What of a cell the fastest wave may cross in a step, over what it may where bodies are on the common grid: a body
+/// alone is stable at 0.9 cells, and one in contact at 0.6, where the usual Courant number is 0.4.
 const LARGER_STEPS: f64 = 1.5;
 
 impl<T: Laned, const D: usize> ReferenceBody<T, D> {
@@ -216,8 +216,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         found.into_iter().fold(Found::NOTHING, Found::and)
     }
 
-    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave in
-    /// undeformed lengths.
+    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave
+    /// in undeformed lengths.
     fn fastest_reference(&self, wave: f64) -> f64 {
         let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
         let speed = fastest.fold(0.0, |most: f64, v| most.max(v.dot(*v))).sqrt();

@@ -1,7 +1,7 @@
 //! Small systems of linear equations.
 
-/// Gauss-Jordan elimination with pivots: unknown `i` in column `i` of each row, the right side in the last. `None` where
-/// a pivot is less than `least`.
+/// Gauss-Jordan elimination with pivots: unknown `i` in column `i` of each row, the right side in the last. `None`
+/// where a pivot is less than `least`.
 pub fn solve<const N: usize>(rows: &mut [[f64; N]], least: f64) -> Option<Vec<f64>> {
     for i in 0..rows.len() {
         let pivot = (i..rows.len()).max_by(|&a, &b| rows[a][i].abs().total_cmp(&rows[b][i].abs()))?;

@@ -38,8 +38,8 @@ impl Followers {
     }
 }
 
-/// Who follows whom, of nodes that have these volumes or are reached, and the volumes of the masters with those of their
-/// followers.
+/// Who follows whom, of nodes that have these volumes or are reached, and the volumes of the masters with those of
+/// their followers.
 pub fn follow<const D: usize>(
     form: &Form<D>,
     own: &[f64],
