@@ -83,6 +83,15 @@ pub struct LoadSums {
     pub driven: [f64; 3],
 }
 
+impl LoadSums {
+    /// Adds what it did in a step.
+    pub fn add(&mut self, step: &LoadSums) {
+        let own = [&mut self.impulse, &mut self.moment, &mut self.driven].into_iter().flatten();
+        own.zip([step.impulse, step.moment, step.driven].concat()).for_each(|(sum, x)| *sum += x);
+        self.work += step.work;
+    }
+}
+
 /// What acts on a point in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointForce<T, const D: usize> {

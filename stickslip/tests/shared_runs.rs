@@ -383,6 +383,74 @@ width = 70
 overlay = "force-chains"
 "#;
 
+/// Bodies on grids of their own on a floor: one that a support holds and a load drives, one of another law that spins
+/// on it with friction that has a memory, a heavy one beside them; and one on the common grid that meets none of them.
+const APART: &str = r#"
+gravity = [0, -9.81]
+damping = { viscous = 0.5 }
+[space]
+dimension = "plane-strain"
+cell = 0.1
+interior = "reference"
+[time]
+end = 0.2
+[materials.gel]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[materials.slow]
+density = 1500
+viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
+[[bodies]]
+name = "base"
+material = "gel"
+shape.box = { min = [-0.5, 0.01], max = [0.5, 0.41] }
+[[bodies]]
+name = "roller"
+material = "slow"
+shape.ball = { center = [0.1, 0.72], radius = 0.3 }
+velocity = [0, -1]
+spin = 6
+[[bodies]]
+name = "large"
+material = "gel"
+shape.ball = { center = [1.5, 0.8], radius = 0.8 }
+velocity = [-0.5, -0.5]
+[[bodies]]
+name = "alone"
+interior = "grid"
+material = "slow"
+shape.ball = { center = [0.0, 2.5], radius = 0.3 }
+[[bodies]]
+name = "floor"
+material = "gel"
+shape.half_space = { point = [0, 0], normal = [0, 1] }
+rigid = {}
+[[supports]]
+name = "foot"
+body = "base"
+on = "x_min"
+stiffness = 2e4
+dashpot = 10
+[[loads]]
+name = "wind"
+body = "base"
+acceleration = ["3 * sin(50 * t)", 0]
+[[contact]]
+between = ["alone", "any"]
+law = "none"
+[[contact]]
+between = ["any", "any"]
+friction = 0.3
+friction_memory_length = 0.002
+friction_memory_speed = 0.1
+[outputs]
+tables = 0.004
+particles = 0.05
+surfaces = 0.1
+samples = 0.01
+checkpoints = 0.02
+"#;
+
 /// The unit cube.
 fn cube() -> String {
     let corner = |i: usize| {
@@ -444,6 +512,7 @@ fn ranks_write_what_one_writes() {
         ("mechanism", &mechanism),
         ("dropped", DROPPED),
         ("carriage", &carriage),
+        ("apart", APART),
     ];
     for (name, text) in scenes {
         let folder = tempfile::tempdir().unwrap();
@@ -469,8 +538,12 @@ fn ranks_write_what_one_writes() {
 /// Stopped on two ranks, taken up by three, and by one; on one, taken up by two.
 #[test]
 fn a_run_goes_on_with_another_number_of_ranks() {
+    [PLANE, APART].into_iter().for_each(goes_on_with_others);
+}
+
+fn goes_on_with_others(text: &str) {
     let folder = tempfile::tempdir().unwrap();
-    let scene = scene(folder.path(), PLANE);
+    let scene = scene(folder.path(), text);
     let whole = folder.path().join("whole");
     start(&scene, 1, &whole);
     for [first, second, third] in [[2, 3, 1], [1, 2, 2]] {

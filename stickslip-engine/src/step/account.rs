@@ -118,6 +118,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let [rubbed, torn, work, reduced] = contact;
         let mut sums =
             [unbalanced, internal, external, kinetic, damped, unsettled, rubbed, torn, work, reduced];
+        if let Some(signal) = self.workspace.reference_signal {
+            self.state.signal = Some(self.state.signal.map_or(signal, |own| own.max(signal)));
+        }
         if let Some(among) = &mut self.among {
             let own = StepEnd { fault: among.fault(), signal: self.state.signal, sums: sums.to_vec() };
             let all = combined(&*among.ranks, &own, StepEnd::and);
@@ -126,9 +129,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }
             self.state.signal = all.signal;
             sums.iter_mut().zip(all.sums).for_each(|(sum, all)| *sum = all);
-        }
-        if let Some(signal) = self.workspace.reference_signal {
-            self.state.signal = Some(self.state.signal.map_or(signal, |own| own.max(signal)));
         }
         let [unbalanced, internal, external, kinetic, damped, unsettled, rubbed, torn, work, reduced] =
             sums.each_ref().map(ExactSum::value);

@@ -201,12 +201,15 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
             periods.wrapped(locate(cell).0)
         };
         let SharedOut { walked, here, partition, homes } = share_out::<D>(scene, &*ranks, (periods, block));
-        let own = |site: &ParticleSite| partition.owner(block(site.position)) == ranks.rank();
+        let own = |body: usize, site: &ParticleSite| match is_reference(scene, body) {
+            true => homes[body].rank as usize == ranks.rank(),
+            false => partition.owner(block(site.position)) == ranks.rank(),
+        };
         let mut engine = Self::filled((scene, Some(kept)), path, &|number| {
             let mut filled = known(&walked[number])?;
             if here.contains(&number) {
                 let sites = (0..).zip(walk(scene, &scene.bodies[number]));
-                filled.kept = sites.filter(|(_, site)| own(site)).collect();
+                filled.kept = sites.filter(|(_, site)| own(number, site)).collect();
             }
             Some(filled)
         })?;

@@ -130,16 +130,21 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             particles(saved, body, (!without_bounds(i)).then_some(filled))
         });
         let restored: Vec<Particles<T, D>> = restored.collect::<Result<_, _>>()?;
-        for (number, mut particles) in restored.into_iter().enumerate() {
-            if self.reference_of(number).is_some() {
-                // Cells know theirs by their numbers.
-                let order = by_number(particles.numbers());
-                particles.permute(&order);
-            }
+        for (number, particles) in restored.into_iter().enumerate() {
             self.state.bodies[number].particles.become_others(particles);
+            self.order_by_number(number);
         }
         self.take_up_rest(saved);
         Ok(())
+    }
+
+    /// Orders the particles of a body on a grid of its own: its cells know them by their numbers.
+    pub(super) fn order_by_number(&mut self, body: usize) {
+        let here = self.state.bodies[body].here_mut();
+        if let Some(here) = here.filter(|_| self.settings.references.iter().any(|own| own.body == body)) {
+            let order = by_number(here.particles.numbers());
+            here.particles.permute(&order);
+        }
     }
 
     /// Looks whether a state is of the same scene, but for particles.

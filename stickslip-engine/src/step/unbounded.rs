@@ -280,7 +280,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         for (i, &site) in sites.iter().enumerate() {
             particles.set(i, &Particle { position: Vector::of(pose.now(site)), ..particle(i) });
         }
-        particles.remove(&self.of_other_ranks(&particles));
+        particles.remove(&self.of_other_ranks(number, &particles));
         let body = &mut self.state.bodies[number];
         body.particles = particles;
         let (particles, grid) = (&body.particles, &self.settings.lattice);

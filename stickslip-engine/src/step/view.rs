@@ -115,18 +115,23 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         };
         known
             .get_or_insert_with(|| match &self.among {
-                Some(among) => among.totals(bodies, kernels),
+                Some(among) => {
+                    let all = among.totals(bodies, kernels);
+                    all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals))).collect()
+                }
                 None => by_parts(bodies.len(), 1, sum).into(),
             })
             .clone()
     }
 
     /// What the particles of a body add up to.
-    pub(super) fn totals_of(&self, body: usize) -> Totals {
-        let body = &self.state.bodies[body];
-        self.among
-            .as_ref()
-            .map_or_else(|| body.totals(self.kernels), |among| among.totals_of(body, self.kernels))
+    pub(super) fn totals_of(&self, number: usize) -> Totals {
+        let body = &self.state.bodies[number];
+        let totals = match &self.among {
+            Some(among) => among.totals_of(body, self.kernels),
+            None => body.totals(self.kernels),
+        };
+        self.with_nodes(number, totals)
     }
 
     /// What a snapshot has of some particles.

@@ -1,6 +1,7 @@
 //! How ranks fill bodies together: each walks through some of them, and tells the others what it found.
 
-use super::Home;
+use super::super::reference::is_reference;
+use super::{Home, share_out_bodies};
 use crate::geometry::{ParticleSite, sites};
 use crate::grid::Periods;
 use crate::ranks::{Census, Message, Partition, Ranks, gathered, message_to};
@@ -108,6 +109,12 @@ pub fn share_out<const D: usize>(
         let rank = first.map_or(0, |place| partition.owner(block(place)));
         Home::new(rank, walked.map_or(0, |walked| walked.count))
     };
-    let homes = walked.iter().map(home).collect();
+    let mut homes: Vec<Home> = walked.iter().map(home).collect();
+    let whole: Vec<usize> = (0..homes.len()).filter(|&body| is_reference(scene, body)).collect();
+    for &body in &whole {
+        here.remove(&body);
+    }
+    share_out_bodies(&mut homes, whole.clone(), ranks.count());
+    here.extend(whole.into_iter().filter(|&body| homes[body].rank as usize == ranks.rank()));
     SharedOut { walked, here, partition, homes }
 }

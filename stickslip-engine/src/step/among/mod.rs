@@ -32,7 +32,7 @@ use crate::ranks::{
     BlockLoad, Message, Partition, Ranks, SentAndWaited, add_up_each, added, bytes_of, combined, gathered,
     largest, message_to, read, told_first,
 };
-use crate::scene::{self, BodyMotion, Face, Interior, Load, NamedMaterial, OutsideValue, Problem, Scene};
+use crate::scene::{self, BodyMotion, Face, Load, NamedMaterial, OutsideValue, Problem, Scene};
 use crate::tensor::Real;
 use crate::threads::each_range;
 use crate::transfer::Share;
@@ -105,6 +105,17 @@ impl Home {
     /// That of a body which began there with so many particles, none if it has no bounds.
     pub fn new(rank: usize, particles: usize) -> Self {
         Home { rank: rank as u32, particles: if particles == 0 { usize::MAX } else { particles } }
+    }
+}
+
+/// Shares whole bodies out, those of these numbers: the largest first, each to the rank that has least.
+fn share_out_bodies(homes: &mut [Home], mut whole: Vec<usize>, ranks: usize) {
+    let mut given = vec![0_usize; ranks];
+    whole.sort_by_key(|&body| (std::cmp::Reverse(homes[body].particles), body));
+    for body in whole {
+        let rank = (0..ranks).min_by_key(|&rank| given[rank]).expect("there is a rank");
+        given[rank] += homes[body].particles;
+        homes[body].rank = rank as u32;
     }
 }
 
@@ -399,15 +410,19 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 
     /// Which particles of a body are not in this rank's share, by their places in memory.
-    pub(super) fn of_other_ranks(&self, particles: &Particles<T, D>) -> Vec<u32> {
+    pub(super) fn of_other_ranks(&self, body: usize, particles: &Particles<T, D>) -> Vec<u32> {
         let Some(among) = &self.among else { return Vec::new() };
-        let abroad = |&particle: &u32| self.owner_of(particles, particle as usize) != among.ranks.rank();
+        let abroad =
+            |&particle: &u32| self.owner_of((body, particles), particle as usize) != among.ranks.rank();
         (0..particles.len() as u32).filter(abroad).collect()
     }
 
-    /// The rank that owns the block of a particle.
-    fn owner_of(&self, particles: &Particles<T, D>, particle: usize) -> usize {
-        let owner = |among: &Among<T>| among.partition.owner(self.block_of(particles, particle));
+    /// The rank that owns a particle: that of its block, or of its whole body where that has a grid of its own.
+    fn owner_of(&self, (body, particles): (usize, &Particles<T, D>), particle: usize) -> usize {
+        let owner = |among: &Among<T>| match self.reference_of(body) {
+            Some(_) => among.homes[body].rank as usize,
+            None => among.partition.owner(self.block_of(particles, particle)),
+        };
         self.among.as_ref().map_or(0, owner)
     }
 
@@ -671,11 +686,9 @@ pub(super) fn can_be_shared(scene: &Scene) -> Result<(), Problem> {
         _ => false,
     };
     let by_function = |load: &Load| load.action.outside().and_then(OutsideValue::function).is_some();
-    let is_apart = |body: usize| scene.interior(body) == Interior::Reference;
     let refused = [
         ("bodies.rigid", "a function from outside", scene.bodies.iter().any(moves_by_function)),
         ("loads", "a function from outside", scene.loads.iter().any(by_function)),
-        ("space.interior", "bodies with interior \"reference\"", (0..scene.bodies.len()).any(is_apart)),
         ("materials", "a law over arrays", scene.materials.iter().any(over_arrays)),
     ];
     let found = refused.into_iter().find(|(.., is_there)| *is_there);

@@ -1,6 +1,6 @@
 //! A saved state, which ranks take up: each some of its particles, which then go to those that own their blocks.
 
-use super::{Home, read_particles, walk, write_particles};
+use super::{Home, read_particles, share_out_bodies, walk, write_particles};
 use crate::door::{NotTakenUp, RestoreError, SavedShare, SavedState};
 use crate::lanes::Laned;
 use crate::ranks::{Census, Message, Ranks, combined, gathered, message_to};
@@ -106,7 +106,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 body.first.filter(|_| filled > 0).map_or(0, |(_, at)| partition.owner::<D>(block(&at)));
             Home::new(rank, filled)
         };
-        let homes = of_bodies.into_iter().zip(&self.settings.filled).map(home).collect();
+        let mut homes: Vec<Home> = of_bodies.into_iter().zip(&self.settings.filled).map(home).collect();
+        let whole = self.settings.references.iter().map(|reference| reference.body);
+        share_out_bodies(&mut homes, whole.collect(), ranks.count());
         self.join(ranks, (partition, homes));
     }
 
@@ -173,8 +175,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             for body in 0..self.state.bodies.len() {
                 let particles = &self.state.bodies[body].particles;
                 let mut gone: Vec<(usize, u32)> = Vec::new();
-                for particle in self.of_other_ranks(particles) {
-                    let owner = self.owner_of(particles, particle as usize);
+                for particle in self.of_other_ranks(body, particles) {
+                    let owner = self.owner_of((body, particles), particle as usize);
                     if room[owner] > 0 {
                         room[owner] -= 1;
                         gone.push((owner, particle));
@@ -198,6 +200,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         for body in 0..self.state.bodies.len() {
             self.state.bodies[body].here_mut().into_iter().for_each(|body| body.particles.fit());
+            self.order_by_number(body);
             self.let_go(body);
         }
     }

@@ -10,10 +10,11 @@ use crate::body::Particle;
 use crate::door::StepError;
 use crate::geometry::form::Weights;
 use crate::lanes::Laned;
-use crate::load::{CarriedPoint, LoadTime, PointForce};
+use crate::load::{CarriedPoint, LoadSums, LoadTime, PointForce};
 use crate::part::PartPoint;
 use crate::scene::{MeanRoom, OutsideValue};
 use crate::tensor::{Matrix, Vector, cross};
+use stickslip_reference::contact::Deforming;
 
 /// What loads do to these bodies in a step.
 pub struct ReferenceLoads<const D: usize> {
@@ -127,16 +128,18 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         Ok(())
     }
+}
 
-    /// Books what loads did to these bodies in a step: what supports keep by their inertia they do not give.
-    pub(super) fn account_reference_loads(&mut self, felt: &ReferenceLoads<D>, dt: f64) {
-        for points in felt.points.chunk_by(|a, b| a.load == b.load) {
-            let sums = &mut self.state.loads[points[0].load];
+impl<const D: usize> ReferenceLoads<D> {
+    /// What loads did to these bodies in a step, load by load: what supports keep by their inertia they do not give.
+    pub(super) fn booked(&self, bodies: &[Deforming<'_, D>], dt: f64) -> Vec<(usize, LoadSums)> {
+        let booked = self.points.chunk_by(|a, b| a.load == b.load).map(|points| {
+            let mut sums = LoadSums::default();
             let measure: f64 = points.iter().map(|point| point.measure).sum();
             let middle =
                 points.iter().map(|point| point.at * (point.measure / measure)).sum::<Vector<f64, D>>();
             for point in points {
-                let nodes = &self.state.references.nodes[point.place];
+                let nodes = &*bodies[point.place].interior;
                 let now = nodes.at(&point.weights, &nodes.velocities);
                 let (mean, change) = ((now + point.begun) * 0.5, (now - point.begun) * (1.0 / dt));
                 let force =
@@ -149,7 +152,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
                 sums.work += force.dot(mean) * dt;
             }
-        }
+            (points[0].load, sums)
+        });
+        booked.collect()
     }
 }
 

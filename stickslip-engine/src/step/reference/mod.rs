@@ -25,6 +25,7 @@ use crate::geometry::Shape;
 use crate::geometry::form::{Form, NoForm};
 use crate::grid::Disjoint;
 use crate::lanes::{Laned, Processor};
+use crate::load::LoadSums;
 use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
 use crate::scene::{ContactLaw, Interior as Kind, Problem, Scene};
 use crate::tensor::{Vector, cross};
@@ -69,6 +70,15 @@ pub(crate) struct SavedNodes {
     velocities: Vec<f64>,
     forces: Vec<f64>,
     layer: f64,
+}
+
+/// What a rank tells the others in a step.
+#[derive(Default, Serialize, Deserialize)]
+struct Homeward {
+    /// Bodies that are here: what damping took [J], and the velocities of the nodes after forces [m/s].
+    bodies: Vec<(usize, f64, Vec<f64>)>,
+    /// What loads on them did.
+    loads: Vec<(usize, LoadSums)>,
 }
 
 /// What of a cell the fastest wave may cross in a step, over what it may where bodies are on the common grid: a body
@@ -146,7 +156,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let gravity = Vector::<f64, D>::of(self.settings.gravity.over_step(self.state.time, dt));
         let loads = self.feel_reference_loads(dt)?;
         let damping = self.settings.damping.double();
-        let Engine { settings, state, workspace, .. } = self;
+        let Engine { settings, state, workspace, among, .. } = self;
         let rigid: Vec<RigidBody<'_>> =
             settings.rigid.iter().filter_map(|&body| RigidBody::new(body, &state.bodies[body])).collect();
         let rigid: Vec<&dyn Rigid> = rigid.iter().map(|rigid| rigid as &dyn Rigid).collect();
@@ -171,13 +181,42 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let rule = |touch: &Touch<D>| friction(&settings.rules, touch);
         let mut touches = find(&bodies, &rigid, &state.references.touching, &meet);
         press(&mut bodies, &mut touches, &rule);
-        for (body, loads) in bodies.iter_mut().zip(&loads.bodies) {
+        let mut own = Homeward::default();
+        for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {
+            // Of several ranks one moves the nodes of a body, that with its particles.
+            if state.bodies[body.body].particles.is_empty() {
+                continue;
+            }
             let before = damping.acts().then(|| body.interior.velocities.clone());
             body.interior.accelerate_with(dt, gravity, &loads.inertia);
-            if let Some(before) = before {
-                state.damping += damp(body.interior, &before, |v, start| damping.damped(v, start, dt));
+            let damped = before
+                .map(|before| damp(body.interior, &before, |v, start| damping.damped(v, start, dt)))
+                .unwrap_or_default();
+            own.bodies.push((
+                place,
+                damped,
+                if among.is_some() { flat(&body.interior.velocities) } else { Vec::new() },
+            ));
+        }
+        own.loads = loads.booked(&bodies, dt);
+        let all = match among {
+            Some(among) => among.gathered(&own),
+            None => vec![own],
+        };
+        let (mut moved, mut booked) = (Vec::new(), Vec::new());
+        for one in all {
+            moved.extend(one.bodies);
+            booked.extend(one.loads);
+        }
+        moved.sort_by_key(|(place, ..)| *place);
+        booked.sort_by_key(|(load, _)| *load);
+        for (place, damped, velocities) in moved {
+            state.damping += damped;
+            if !velocities.is_empty() {
+                bodies[place].interior.velocities = vectors(&velocities);
             }
         }
+        booked.into_iter().for_each(|(load, sums)| state.loads[load].add(&sums));
         let layers = &mut state.references.layers;
         layers.clear();
         layers.resize(bodies.len(), 0.0);
@@ -191,8 +230,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
         books::book(&mut workspace.reference_touches, &rigid, (&touches, dt));
+        if let Some(among) = among {
+            workspace.reference_touches.retain(|touch| among.keeps(touch.bodies));
+        }
         bodies.into_iter().for_each(|body| body.interior.advance(dt));
-        self.account_reference_loads(&loads, dt);
         Ok(())
     }
 
@@ -210,6 +251,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             // SAFETY: every body and its nodes belong to one entry.
             let (here, interior) = unsafe { (bodies.get(*body), nodes.get(place)) };
             let Body::Here(here) = here else { return };
+            if here.particles.is_empty() {
+                return;
+            }
             let straining = Straining { body: *body, dt, processor };
             *found = strain(interior, table, (&here.matter, &mut here.particles), straining);
         });
@@ -256,17 +300,27 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         totals
     }
 
-    /// The nodes of these bodies as data, and the points that touch.
+    /// The nodes of these bodies as data, and the points that touch. Of several ranks the first knows the forces on
+    /// all.
     pub(super) fn saved_nodes(&self) -> (Vec<SavedNodes>, Vec<Memory>) {
-        let flat = |all: &[Vector<f64, D>]| all.iter().flat_map(|v| v.0).collect();
         let References { nodes, touching, layers } = &self.state.references;
-        let saved = nodes.iter().enumerate().map(|(place, nodes)| SavedNodes {
-            places: flat(&nodes.places),
-            velocities: flat(&nodes.velocities),
-            forces: flat(&nodes.forces),
-            layer: layers.get(place).copied().unwrap_or(0.0),
-        });
-        (saved.collect(), touching.clone())
+        let mut saved: Vec<SavedNodes> = (nodes.iter().enumerate())
+            .map(|(place, nodes)| SavedNodes {
+                places: flat(&nodes.places),
+                velocities: flat(&nodes.velocities),
+                forces: flat(&nodes.forces),
+                layer: layers.get(place).copied().unwrap_or(0.0),
+            })
+            .collect();
+        if self.among.is_some() && !saved.is_empty() {
+            let own = saved.iter().zip(&self.settings.references).enumerate();
+            let own = own.filter(|(_, (_, of))| !self.state.bodies[of.body].particles.is_empty());
+            let own: Vec<_> = own.map(|(place, (saved, _))| (place, saved.forces.clone())).collect();
+            for (place, forces) in self.told_first(own).into_iter().flatten() {
+                saved[place].forces = forces;
+            }
+        }
+        (saved, touching.clone())
     }
 
     /// Whether saved nodes are those of these bodies.
@@ -282,9 +336,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// Goes on with these nodes.
     pub(super) fn take_up_nodes(&mut self, saved: &[SavedNodes], touching: Vec<Memory>) {
-        let vectors = |all: &[f64]| -> Vec<Vector<f64, D>> {
-            all.chunks_exact(D).map(|v| Vector(std::array::from_fn(|k| v[k]))).collect()
-        };
         for (nodes, saved) in self.state.references.nodes.iter_mut().zip(saved) {
             nodes.places = vectors(&saved.places);
             nodes.velocities = vectors(&saved.velocities);
@@ -293,6 +344,14 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.state.references.layers = saved.iter().map(|saved| saved.layer).collect();
         self.state.references.touching = touching;
     }
+}
+
+fn flat<const D: usize>(all: &[Vector<f64, D>]) -> Vec<f64> {
+    all.iter().flat_map(|v| v.0).collect()
+}
+
+fn vectors<const D: usize>(all: &[f64]) -> Vec<Vector<f64, D>> {
+    all.as_chunks().0.iter().map(|v| Vector(*v)).collect()
 }
 
 /// Damps the velocities of nodes that had others before the forces of the step, and says what that took [J].
