@@ -145,21 +145,6 @@ impl<const D: usize> Interior<D> {
             .map(|(mass, velocity)| 0.5 * mass * velocity.dot(*velocity))
             .sum()
     }
-
-    /// Corners of a box that holds the body: a place is a mean of the nodes around it [m].
-    pub fn bounds(&self) -> [Vector<f64, D>; 2] {
-        let mut bounds = [Vector([f64::INFINITY; D]), Vector([f64::NEG_INFINITY; D])];
-        for cell in &self.form.cells {
-            for &offset in &self.form.offsets {
-                let x = self.places[(cell.node + offset) as usize];
-                for a in 0..D {
-                    bounds[0][a] = bounds[0][a].min(x[a]);
-                    bounds[1][a] = bounds[1][a].max(x[a]);
-                }
-            }
-        }
-        bounds
-    }
 }
 
 #[cfg(test)]

@@ -35,6 +35,7 @@ use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
 use std::collections::HashSet;
 use std::sync::Arc;
+use stickslip_reference::cells::Table;
 
 /// The simulation of a scene.
 ///
@@ -289,6 +290,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 None => make()?.into(),
             });
         }
+        let tables = Table::of_all(nodes.iter().map(|nodes| &*nodes.form));
         let periods = periods::<D>(scene);
         let origin = origin(scene);
         let tallies = scene.outputs.measurements.faces().next().is_some();
@@ -324,6 +326,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 free: free_bodies(scene),
                 rigid,
                 references,
+                tables,
                 together,
                 averages_volume,
                 time: scene.time.clone(),

@@ -7,6 +7,7 @@ use crate::lanes::Laned;
 use crate::part::PartPoint;
 use crate::tensor::Real;
 use crate::threads::each;
+use stickslip_reference::contact::Neighbours;
 
 impl<T: Real, const D: usize> State<T, D> {
     /// Becomes a copy of another state of the same simulation, in the memory that is there.
@@ -84,6 +85,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     pub(super) fn take_back_state(&mut self) -> bool {
         let Some(held) = &self.held else { return false };
         self.state.become_copy_of(&held.state);
+        self.workspace.neighbours = Neighbours::default();
         for (load, points) in self.settings.loads.iter_mut().zip(&held.points) {
             load.points.clone_from(points);
         }

@@ -13,6 +13,7 @@ use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::SETTLES_EVERY;
 use std::convert::Infallible;
 use std::ops::Range;
+use stickslip_reference::contact::Neighbours;
 
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// The state as data.
@@ -236,6 +237,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         (state.signal, state.time) = (saved.signal, saved.time);
         (state.steps, state.phase) = (saved.steps, saved.phase % SETTLES_EVERY);
         self.take_up_nodes(&saved.nodes, saved.touching);
+        self.workspace.neighbours = Neighbours::default();
     }
 }
 

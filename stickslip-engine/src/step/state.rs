@@ -22,6 +22,8 @@ use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::scene::{Changes, Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
+use stickslip_reference::cells::Table;
+use stickslip_reference::contact::Neighbours;
 
 use crate::pass::{Found, ParticleLoop};
 
@@ -59,7 +61,9 @@ pub struct Settings<T, const D: usize> {
     /// Rigid bodies, in their order.
     pub rigid: Vec<usize>,
     /// Bodies on grids of their own, in their order.
-    pub references: Vec<ReferenceBody<T, D>>,
+    pub references: Vec<ReferenceBody<D>>,
+    /// The functions at the particles of each of these.
+    pub tables: Vec<Table<T, D>>,
     /// Bodies whose law takes all particles at once, in their order.
     pub together: Vec<usize>,
     /// Whether any body's material wants means of dilatation rate and pressure.
@@ -169,6 +173,8 @@ pub struct Workspace<T, const D: usize> {
     pub damping_impulses: Vec<Vector<T, D>>,
     /// What pairs with bodies on grids of their own did in the step.
     pub reference_touches: Vec<BlockSums>,
+    /// Points of theirs that may come to touch.
+    pub neighbours: Neighbours<D>,
     /// The signal that these bodies allow, if there are any [m/s].
     pub reference_signal: Option<f64>,
     /// What pairs of bodies did in the step, use by use of contact.
@@ -208,6 +214,7 @@ impl<T, const D: usize> Workspace<T, D> {
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
             reference_touches: Vec::new(),
+            neighbours: Neighbours::default(),
             reference_signal: None,
             touches: Default::default(),
             weights: Vec::new(),

@@ -73,12 +73,13 @@ pub fn slip<const D: usize>(
         let slip = touch.slip;
         let mut memory = touch.memory;
         memory.stored = (Vector(memory.stored) + Vector((slip * dt).space())).0;
+        memory.age += dt;
         // It goes on slipping only as long as its surfaces move that way.
         memory.speed = if memory.speed > 0.0 && slip.dot(touch.traction) < 0.0 { slip.norm() } else { 0.0 };
         if let Some(law) = rule(touch).memory {
             // What sticks has the strength of its pressure: only what slips lags behind.
             memory.remembered = match memory.speed > 0.0 {
-                true => law.after(memory.remembered, (touch.pressure(), slip.norm(), dt)),
+                true => law.after(memory.remembered, (touch.pressure(), slip.norm(), dt), memory.age),
                 false => touch.pressure(),
             };
         }

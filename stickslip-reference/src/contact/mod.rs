@@ -27,7 +27,7 @@ mod tests;
 pub use act::{press, slip};
 pub use friction::Friction;
 pub use look::{Seen, look};
-pub use near::{Partner, find};
+pub use near::{Neighbours, Partner, find};
 
 use crate::interior::Interior;
 use crate::surface::SurfacePoint;
@@ -84,6 +84,8 @@ pub struct Memory {
     pub borne: [f64; 3],
     /// Speed at which it slipped in the step before; zero where it stuck [m/s].
     pub speed: f64,
+    /// How long it has touched [s].
+    pub age: f64,
 }
 
 /// A point that touches, in a step.

@@ -1,9 +1,7 @@
 //! Which points of surfaces touch which partners.
 
 use super::{Deforming, Memory, Met, Rigid, STIFFNESS, Touch, look};
-use crate::surface::SurfacePoint;
 use rayon::prelude::*;
-use std::collections::HashMap;
 use stickslip_mechanics::geometry::Shape;
 use stickslip_mechanics::geometry::form::digits;
 use stickslip_mechanics::tensor::Vector;
@@ -17,72 +15,311 @@ pub enum Partner {
     Rigid(usize),
 }
 
-/// How far boxes may be apart whose bodies are looked at, in cells.
-const MARGIN: f64 = 1e-3;
-/// How far points may lie from the nearest point of the partner's surface, in cells.
-const NEAR: f64 = 1.5;
+/// By how much a body may bulge beyond the points of its surface, and move, in cells.
+const MARGIN: f64 = 0.75;
+/// How near points of two surfaces are that may come to touch each other, in cells.
+const NEAR: f64 = 1.0;
+/// How far a body may move before its neighbours are sought anew, in cells: points of two surfaces lie half as far apart
+/// as neighbours do.
+const SKIN: f64 = 0.25;
+/// How far the nearest point of a surface may be from a place just inside, undeformed, in cells.
+const AROUND: f64 = 2.0;
+/// What of a gap is certain: gaps are measured along one direction, and some distances are bounds.
+const CERTAIN: f64 = 0.6;
+
+/// Points of surfaces that may come to touch, found anew once bodies have moved. They say where to look, not what is
+/// found: touches are the same with neighbours of now and of before.
+#[derive(Clone, Debug, Default)]
+pub struct Neighbours<const D: usize> {
+    pairs: Vec<Pair<D>>,
+    rigid: Vec<RigidPair>,
+    /// Boxes around bodies when their neighbours were sought.
+    boxes: Vec<[Vector<f64, D>; 2]>,
+    /// How far each body has moved since at most [m].
+    moved: Vec<f64>,
+    /// Bodies beside rigid ones, and how far these have moved there [m].
+    beside: Vec<(usize, usize, f64)>,
+}
+
+/// A point near a partner that deforms, by places in the list of these.
+#[derive(Clone, Copy, Debug)]
+struct Pair<const D: usize> {
+    body: u32,
+    point: u32,
+    partner: u32,
+    /// How far it was from the partner at least [m].
+    gap: f64,
+    /// Where the partner is undeformed there, about.
+    place: Vector<f64, D>,
+}
+
+/// A point near a rigid body, and its place beside it in [`Neighbours::beside`].
+#[derive(Clone, Copy, Debug)]
+struct RigidPair {
+    body: u32,
+    point: u32,
+    beside: u32,
+    gap: f64,
+}
 
 /// The points that touch, by body, point and partner. `meet` says whether a body touches a partner at all; `known` are
 /// the points that touched before, in the same order.
 pub fn find<const D: usize>(
-    bodies: &[Deforming<'_, D>],
-    rigids: &[&dyn Rigid],
+    (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
     known: &[Memory],
     meet: &(dyn Fn(usize, Partner) -> bool + Sync),
+    neighbours: &mut Neighbours<D>,
 ) -> Vec<Touch<D>> {
-    let boxes: Vec<_> = bodies.iter().map(|body| grown(body)).collect();
-    let pairs = pairs(&boxes);
-    let mut near = vec![Vec::new(); bodies.len()];
-    for [a, b] in pairs {
-        near[a].push(b);
-        near[b].push(a);
+    if neighbours.are_old(bodies) {
+        *neighbours = Neighbours::new(bodies, rigids, meet);
     }
-    (near.iter_mut().enumerate()).filter(|(a, _)| may_fold(&bodies[*a])).for_each(|(a, near)| near.push(a));
-    let partners = |a: usize| {
-        let deforming = near[a].iter().copied().filter(|&b| meet(a, Partner::Deforming(b))).collect();
-        let close = |(_, rigid): &(usize, &&dyn Rigid)| overlap(&boxes[a], &rigid.bounds().map(Vector::of));
-        let rigid = rigids.iter().enumerate().filter(close).map(|(r, _)| r);
-        (deforming, rigid.filter(|&r| meet(a, Partner::Rigid(r))).collect())
-    };
-    let partners: Vec<(Vec<usize>, Vec<usize>)> = (0..bodies.len()).map(partners).collect();
-    // Where the points are of bodies that may touch anything.
-    let places = |(body, (deforming, rigid)): (&Deforming<'_, D>, &(Vec<usize>, Vec<usize>))| {
-        let of = |point: &SurfacePoint<D>| body.interior.at(&point.weights, &body.interior.places);
-        let asked = !(deforming.is_empty() && rigid.is_empty());
-        if asked { body.surface.iter().map(of).collect() } else { Vec::new() }
-    };
-    let places: Vec<Vec<Vector<f64, D>>> = bodies.par_iter().zip(&partners).map(places).collect();
-    let of_body = |a: usize| {
-        let (deforming, rigid) = &partners[a];
-        touches_of((bodies, &places, a), (deforming, &boxes), (rigid, rigids), known)
-    };
-    let mut touches: Vec<_> = (0..bodies.len()).into_par_iter().map(of_body).collect::<Vec<_>>().concat();
-    touches.sort_by_key(|touch| key(&touch.memory));
-    touches
+    let here = &*neighbours;
+    let touches = |a: usize| here.touches_of((bodies, rigids, a), known);
+    (0..bodies.len()).into_par_iter().map(touches).collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
-/// The points of a body's surface, at these places, that touch any of these partners.
-fn touches_of<const D: usize>(
-    (bodies, places, a): (&[Deforming<'_, D>], &[Vec<Vector<f64, D>>], usize),
-    (partners, boxes): (&[usize], &[[Vector<f64, D>; 2]]),
-    (rigid, rigids): (&[usize], &[&dyn Rigid]),
-    known: &[Memory],
-) -> Vec<Touch<D>> {
-    let mut touches = Vec::new();
-    let grid = |&b: &usize| Neighbours::new(&places[b], bodies[b].interior.form.cell, &boxes[a]);
-    let grids: Vec<Neighbours<D>> = partners.iter().map(grid).collect();
-    for (number, &at) in places[a].iter().enumerate() {
-        let seen = Point { bodies, a, number, at };
-        for (&b, grid) in partners.iter().zip(&grids) {
-            if inside(&boxes[b], at) {
-                // What is beside it is no partner.
-                let own = (a == b).then_some(bodies[a].surface[number].place);
-                touches.extend(seen.in_body(b, (grid, own), known));
+impl<const D: usize> Neighbours<D> {
+    /// Takes note of how bodies move in a step of `dt` [s].
+    pub fn moved(&mut self, (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]), dt: f64) {
+        for (moved, body) in self.moved.iter_mut().zip(bodies) {
+            let squares = body.interior.velocities.iter().map(|v| v.dot(*v));
+            *moved += squares.fold(0.0, f64::max).sqrt() * dt;
+        }
+        for (a, r, moved) in &mut self.beside {
+            // A rigid motion is fastest at a corner.
+            let [low, high] = self.boxes[*a];
+            let corners = (0..1_usize << D).map(|corner| {
+                let at = Vector::<f64, D>::from_fn(|k| if corner >> k & 1 == 1 { high[k] } else { low[k] });
+                Vector::<f64, 3>(rigids[*r].velocity(at.space())).norm()
+            });
+            *moved += corners.fold(0.0, f64::max) * dt;
+        }
+    }
+
+    fn are_old(&self, bodies: &[Deforming<'_, D>]) -> bool {
+        let far = |a: usize, moved: f64| moved.is_nan() || moved > SKIN * bodies[a].interior.form.cell;
+        self.moved.len() != bodies.len()
+            || self.moved.iter().enumerate().any(|(a, &moved)| far(a, moved))
+            || self.beside.iter().any(|&(a, _, moved)| far(a, moved))
+    }
+
+    fn new(
+        bodies: &[Deforming<'_, D>],
+        rigids: &[&dyn Rigid],
+        meet: &(dyn Fn(usize, Partner) -> bool + Sync),
+    ) -> Self {
+        let places = |a: usize| -> Vec<Vector<f64, D>> {
+            (0..bodies[a].surface.len()).map(|point| place(&bodies[a], point)).collect()
+        };
+        let places: Vec<Vec<Vector<f64, D>>> = (0..bodies.len()).into_par_iter().map(places).collect();
+        let boxes: Vec<_> = bodies.iter().zip(&places).map(|(body, places)| grown(body, places)).collect();
+        let mut near = vec![Vec::new(); bodies.len()];
+        for [a, b] in pairs(&boxes) {
+            for [a, b] in [[a, b], [b, a]] {
+                if meet(a, Partner::Deforming(b)) {
+                    near[a].push(b);
+                }
             }
         }
-        touches.extend(rigid.iter().filter_map(|&r| seen.in_rigid((r, rigids[r]), known)));
+        for (a, near) in near.iter_mut().enumerate() {
+            if may_fold(&bodies[a]) && meet(a, Partner::Deforming(a)) {
+                near.push(a);
+            }
+            near.sort_unstable();
+        }
+        let seen = Seen { bodies, places: &places, boxes: &boxes, near: &near };
+        let pairs = seen.close_points().into_par_iter().map(|close| seen.pair(close)).collect();
+        let beside: Vec<(usize, usize, f64)> = (0..bodies.len())
+            .flat_map(|a| (0..rigids.len()).map(move |r| (a, r, 0.0)))
+            .filter(|&(a, r, _)| {
+                overlap(&boxes[a], &rigids[r].bounds().map(Vector::of)) && meet(a, Partner::Rigid(r))
+            })
+            .collect();
+        let rigid_pairs = |(number, &(a, r, _)): (usize, &(usize, usize, f64))| {
+            let far = 2.0 * SKIN * bodies[a].interior.form.cell;
+            let close = (0..).zip(&places[a]).filter_map(|(point, at)| {
+                let gap = CERTAIN * rigids[r].level(at.space()).distance;
+                let gap = if gap.is_nan() { f64::NEG_INFINITY } else { gap };
+                (gap <= far).then_some(RigidPair { body: a as u32, point, beside: number as u32, gap })
+            });
+            close.collect::<Vec<_>>()
+        };
+        let rigid = beside.par_iter().enumerate().map(rigid_pairs).collect::<Vec<_>>();
+        let rigid = rigid.into_iter().flatten().collect();
+        Neighbours { pairs, rigid, boxes, moved: vec![0.0; bodies.len()], beside }
     }
-    touches
+
+    /// The points of a body's surface that touch: those that touched before, and neighbours that have come so near.
+    fn touches_of(
+        &self,
+        (bodies, rigids, a): (&[Deforming<'_, D>], &[&dyn Rigid], usize),
+        known: &[Memory],
+    ) -> Vec<Touch<D>> {
+        let number = bodies[a].body as u32;
+        let known = &known[known.partition_point(|memory| memory.body < number)..];
+        let known = &known[..known.partition_point(|memory| memory.body == number)];
+        let is_known = |point: u32, partner: usize| {
+            known.binary_search_by_key(&(number, point, partner as u32), key).is_ok()
+        };
+        let point =
+            |point: u32| Point { bodies, a, number: point as usize, at: place(&bodies[a], point as usize) };
+        let again = |memory: &Memory| {
+            let partner = memory.partner as usize;
+            match bodies.binary_search_by_key(&partner, |body| body.body) {
+                Ok(b) => point(memory.point).in_body(b, *memory),
+                Err(_) => {
+                    let r = rigids.iter().position(|rigid| rigid.body() == partner)?;
+                    point(memory.point).in_rigid((r, rigids[r]), *memory)
+                }
+            }
+        };
+        let mut touches: Vec<Touch<D>> = known.iter().filter_map(again).collect();
+        let pairs = &self.pairs[self.pairs.partition_point(|pair| (pair.body as usize) < a)..];
+        for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
+            let b = pair.partner as usize;
+            if pair.gap <= self.moved[a] + self.moved[b] && !is_known(pair.point, bodies[b].body) {
+                touches.extend(point(pair.point).come_to(b, pair.place));
+            }
+        }
+        let pairs = &self.rigid[self.rigid.partition_point(|pair| (pair.body as usize) < a)..];
+        for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
+            let (_, r, moved) = self.beside[pair.beside as usize];
+            if pair.gap <= self.moved[a] + moved && !is_known(pair.point, rigids[r].body()) {
+                let point = point(pair.point);
+                touches.extend(point.in_rigid((r, rigids[r]), point.fresh(rigids[r].body())));
+            }
+        }
+        touches.sort_by_key(|touch| key(&touch.memory));
+        touches
+    }
+}
+
+/// A point of a body's surface in a cell of the lattice in which they are looked up.
+#[derive(Clone, Copy)]
+struct Entry<const D: usize> {
+    cell: [i32; D],
+    body: u32,
+    point: u32,
+    at: Vector<f64, D>,
+}
+
+/// A point that lies near a point of a partner's surface, by places in the list of bodies that deform.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Close {
+    body: u32,
+    point: u32,
+    partner: u32,
+    /// The nearest of the partner's points.
+    nearest: u32,
+}
+
+/// All bodies that deform, where the points of their surfaces are, boxes around these, and whom each may touch.
+struct Seen<'a, 'b, const D: usize> {
+    bodies: &'a [Deforming<'b, D>],
+    places: &'a [Vec<Vector<f64, D>>],
+    boxes: &'a [[Vector<f64, D>; 2]],
+    near: &'a [Vec<usize>],
+}
+
+impl<const D: usize> Seen<'_, '_, D> {
+    /// A pair of neighbours with what is known of its gap.
+    fn pair(&self, close: Close) -> Pair<D> {
+        let Close { body, point, partner, nearest } = close;
+        let (a, other) = (&self.bodies[body as usize], &self.bodies[partner as usize]);
+        let at = self.places[body as usize][point as usize];
+        let start = other.surface[nearest as usize].place;
+        let toward = Some(normal(a, point as usize));
+        let (gap, place) = match look((&*other.interior, other.shape), at, start, toward) {
+            Some(seen) if seen.distance > 0.0 => (CERTAIN * seen.distance, seen.place),
+            _ => (f64::NEG_INFINITY, start),
+        };
+        Pair { body, point, partner, gap, place }
+    }
+
+    /// Points that lie near a point of a partner's surface, ordered.
+    fn close_points(&self) -> Vec<Close> {
+        let width = NEAR * self.bodies.iter().map(|body| body.interior.form.cell).fold(0.0, f64::max);
+        let entries_of = |a: usize| {
+            let reach = Vector([width; D]);
+            let around: Vec<_> =
+                self.near[a].iter().map(|&b| [self.boxes[b][0] - reach, self.boxes[b][1] + reach]).collect();
+            let beside =
+                (0..).zip(&self.places[a]).filter(|(_, at)| around.iter().any(|it| inside(it, **at)));
+            let entry = |(point, &at): (u32, &Vector<f64, D>)| {
+                let cell = std::array::from_fn(|k| (at[k] / width).floor() as i32);
+                Entry { cell, body: a as u32, point, at }
+            };
+            beside.map(entry).collect::<Vec<_>>()
+        };
+        let entries = (0..self.bodies.len()).into_par_iter().map(entries_of).collect::<Vec<_>>();
+        let mut entries: Vec<Entry<D>> = entries.into_iter().flatten().collect();
+        entries.par_sort_unstable_by_key(|entry| (entry.cell, entry.body, entry.point));
+        let cells: Vec<&[Entry<D>]> = entries.chunk_by(|a, b| a.cell == b.cell).collect();
+        let close = |here: &&[Entry<D>]| self.close_in(here, &cells, width);
+        let mut all: Vec<Close> =
+            cells.par_iter().map(close).collect::<Vec<_>>().into_iter().flatten().collect();
+        all.par_sort_unstable();
+        all
+    }
+
+    /// The same of the points in a cell.
+    fn close_in(&self, here: &[Entry<D>], cells: &[&[Entry<D>]], width: f64) -> Vec<Close> {
+        // The last axis runs fastest: three cells behind each other.
+        let mut around = Vec::new();
+        for row in 0..3_usize.pow(D as u32 - 1) {
+            let step = digits(row, [3; D]);
+            let mut first = here[0].cell;
+            for k in 0..D - 1 {
+                first[k] += step[k + 1] as i32 - 1;
+            }
+            first[D - 1] -= 1;
+            let start = cells.partition_point(|cell| cell[0].cell < first);
+            let last = first[D - 1] + 2;
+            let row = cells[start..]
+                .iter()
+                .take_while(|cell| cell[0].cell[..D - 1] == first[..D - 1] && cell[0].cell[D - 1] <= last);
+            around.extend(row.copied());
+        }
+        let mut close = Vec::new();
+        let mut best: Vec<(f64, Close)> = Vec::new();
+        for entry in here {
+            let a = entry.body as usize;
+            best.clear();
+            for others in around.iter().flat_map(|cell| cell.chunk_by(|p, q| p.body == q.body)) {
+                let (partner, b) = (others[0].body, others[0].body as usize);
+                if self.near[a].binary_search(&b).is_err() {
+                    continue;
+                }
+                let nearest = others
+                    .iter()
+                    .filter(|other| a != b || are_apart(&self.bodies[a], [entry.point, other.point]))
+                    .map(|other| ((other.at - entry.at).dot(other.at - entry.at), other.point))
+                    .min_by(|one, other| one.0.total_cmp(&other.0));
+                let Some((square, nearest)) = nearest.filter(|(square, _)| *square < width * width) else {
+                    continue;
+                };
+                let it = Close { body: entry.body, point: entry.point, partner, nearest };
+                match best.iter_mut().find(|(_, close)| close.partner == partner) {
+                    Some(known) if square < known.0 => *known = (square, it),
+                    Some(_) => {}
+                    None => best.push((square, it)),
+                }
+            }
+            close.extend(best.iter().map(|(_, close)| *close));
+        }
+        close
+    }
+}
+
+/// Where a point of a body's surface is.
+fn place<const D: usize>(body: &Deforming<'_, D>, point: usize) -> Vector<f64, D> {
+    body.interior.at(&body.surface[point].weights, &body.interior.places)
+}
+
+/// Whether two points of a body's surface lie so far apart, undeformed, that they may touch.
+fn are_apart<const D: usize>(body: &Deforming<'_, D>, points: [u32; 2]) -> bool {
+    let [one, other] = points.map(|point| body.surface[point as usize].place);
+    (one - other).norm() > APART * body.interior.form.cell
 }
 
 fn key(memory: &Memory) -> (u32, u32, u32) {
@@ -119,27 +356,21 @@ struct Point<'a, 'b, const D: usize> {
     at: Vector<f64, D>,
 }
 
+/// Outward normal of the deformed surface at a point of it, F^-T N.
+fn normal<const D: usize>(body: &Deforming<'_, D>, point: usize) -> Vector<f64, D> {
+    let point = &body.surface[point];
+    let (_, f) = body.interior.map(&point.weights);
+    // Cofactors of F in space: J F^-T.
+    let f = |i: usize, j: usize| if i < D && j < D { f[i][j] } else { f64::from(u8::from(i == j)) };
+    let cofactor = |i: usize, j: usize| {
+        let (i1, i2, j1, j2) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+        f(i1, j1) * f(i2, j2) - f(i1, j2) * f(i2, j1)
+    };
+    let normal = Vector::from_fn(|i| (0..D).map(|j| cofactor(i, j) * point.normal[j]).sum());
+    normal * (1.0 / normal.norm())
+}
+
 impl<const D: usize> Point<'_, '_, D> {
-    /// Outward normal of the deformed surface, F^-T N.
-    fn normal(&self) -> Vector<f64, D> {
-        let body = &self.bodies[self.a];
-        let point = &body.surface[self.number];
-        let (_, f) = body.interior.map(&point.weights);
-        // Cofactors of F in space: J F^-T.
-        let f = |i: usize, j: usize| if i < D && j < D { f[i][j] } else { f64::from(u8::from(i == j)) };
-        let cofactor = |i: usize, j: usize| {
-            let (i1, i2, j1, j2) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
-            f(i1, j1) * f(i2, j2) - f(i1, j2) * f(i2, j1)
-        };
-        let normal = Vector::from_fn(|i| (0..D).map(|j| cofactor(i, j) * point.normal[j]).sum());
-        normal * (1.0 / normal.norm())
-    }
-
-    fn remembered(&self, partner: usize, known: &[Memory]) -> Option<Memory> {
-        let key_here = (self.bodies[self.a].body as u32, self.number as u32, partner as u32);
-        known.binary_search_by_key(&key_here, key).ok().map(|place| known[place])
-    }
-
     /// What a point that touches for the first time has to remember.
     fn fresh(&self, partner: usize) -> Memory {
         Memory {
@@ -151,6 +382,7 @@ impl<const D: usize> Point<'_, '_, D> {
             stored: [0.0; 3],
             borne: [0.0; 3],
             speed: 0.0,
+            age: 0.0,
         }
     }
 
@@ -176,98 +408,61 @@ impl<const D: usize> Point<'_, '_, D> {
         }
     }
 
-    /// Where it lies in a partner; of itself what lies far from a place of its own.
-    fn in_body(
-        &self,
-        b: usize,
-        (grid, own): (&Neighbours<D>, Option<Vector<f64, D>>),
-        known: &[Memory],
-    ) -> Option<Touch<D>> {
+    /// Looks whether it has come to touch a neighbour that is undeformed about there; if so it is sought from the nearest
+    /// point of the neighbour's surface, whatever was known before.
+    fn come_to(&self, b: usize, about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
-        let apart = APART * body.interior.form.cell;
-        let is_apart = |place: Vector<f64, D>| own.is_none_or(|own| (place - own).norm() > apart);
-        let before = self.remembered(partner.body, known);
-        let start = match before {
-            Some(before) => Vector::of(before.place),
-            None => {
-                partner.surface[grid.nearest(self.at, |point| is_apart(partner.surface[point].place))?].place
-            }
+        let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
+        let found = Vector::<f64, D>::of(self.in_body(b, memory(about))?.memory.place);
+        let reach = AROUND * partner.interior.form.cell;
+        let is_near = |point: &u32| (partner.surface[*point as usize].place - found).norm() < reach;
+        let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
+        let away = |point: u32| {
+            let away = place(partner, point as usize) - self.at;
+            (away.dot(away), point)
         };
-        let seen = look((partner.interior, partner.shape), self.at, start, Some(self.normal()))?;
-        if seen.distance >= 0.0 || !is_apart(seen.place) {
+        let all = (0..partner.surface.len() as u32).filter(is_near).filter(is_apart).map(away);
+        let (_, nearest) = all.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)))?;
+        self.in_body(b, memory(partner.surface[nearest as usize].place))
+    }
+
+    /// Where it lies in a partner, sought from where it did before; of itself what lies far from a place of its own.
+    fn in_body(&self, b: usize, before: Memory) -> Option<Touch<D>> {
+        let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
+        let start = Vector::of(before.place);
+        let toward = Some(normal(body, self.number));
+        let seen = look((&*partner.interior, partner.shape), self.at, start, toward)?;
+        let own = body.surface[self.number].place;
+        let is_beside = self.a == b && (seen.place - own).norm() <= APART * body.interior.form.cell;
+        if seen.distance >= 0.0 || is_beside {
             return None;
         }
         let (h, k) = (body.interior.form.cell, partner.interior.form.cell);
         let of = |modulus: usize| STIFFNESS / (h / body.moduli[modulus] + k / partner.moduli[modulus]);
-        let before = before.unwrap_or_else(|| self.fresh(partner.body));
         let memory = Memory { place: seen.place.space(), ..before };
         // The partner looks back with the other half.
         let layer = (0.5, [of(0), of(1)]);
         Some(self.touch((memory, Met::Deforming(b, seen.weights)), (seen.normal, seen.distance), layer))
     }
 
-    fn in_rigid(&self, (r, rigid): (usize, &dyn Rigid), known: &[Memory]) -> Option<Touch<D>> {
+    fn in_rigid(&self, (r, rigid): (usize, &dyn Rigid), memory: Memory) -> Option<Touch<D>> {
         let level = rigid.level(self.at.space());
         if level.distance.is_nan() || level.distance >= 0.0 {
             return None;
         }
         let body = &self.bodies[self.a];
-        let memory = self.remembered(rigid.body(), known).unwrap_or_else(|| self.fresh(rigid.body()));
         let layer = (1.0, body.moduli.map(|modulus| STIFFNESS * modulus / body.interior.form.cell));
         Some(self.touch((memory, Met::Rigid(r)), (Vector::of(level.gradient), level.distance), layer))
     }
 }
 
-/// Points of a body's surface that lie in a box, by cells of a lattice as wide as they may be far.
-struct Neighbours<const D: usize> {
-    width: f64,
-    points: HashMap<[i32; D], Vec<(u32, Vector<f64, D>)>>,
-}
-
-impl<const D: usize> Neighbours<D> {
-    /// Of points at these places.
-    fn new(places: &[Vector<f64, D>], cell: f64, around: &[Vector<f64, D>; 2]) -> Self {
-        let width = NEAR * cell;
-        let mut points: HashMap<_, Vec<_>> = HashMap::new();
-        let reach = Vector([width; D]);
-        let around = [around[0] - reach, around[1] + reach];
-        for (number, &at) in places.iter().enumerate() {
-            if inside(&around, at) {
-                points.entry(Self::cell(at, width)).or_default().push((number as u32, at));
-            }
-        }
-        Neighbours { width, points }
-    }
-
-    fn cell(at: Vector<f64, D>, width: f64) -> [i32; D] {
-        std::array::from_fn(|a| (at[a] / width).floor() as i32)
-    }
-
-    /// The nearest of those that count, if one is near; of several the first.
-    fn nearest(&self, at: Vector<f64, D>, counts: impl Fn(usize) -> bool) -> Option<usize> {
-        let here = Self::cell(at, self.width);
-        let mut best: Option<(f64, u32)> = None;
-        for number in 0..3_usize.pow(D as u32) {
-            let step = digits(number, [3; D]);
-            let cell = std::array::from_fn(|a| here[a] + step[a] as i32 - 1);
-            for &(point, x) in self.points.get(&cell).into_iter().flatten() {
-                let square = (x - at).dot(x - at);
-                if square < self.width * self.width
-                    && counts(point as usize)
-                    && best.is_none_or(|best| (square, point) < best)
-                {
-                    best = Some((square, point));
-                }
-            }
-        }
-        best.map(|(_, point)| point as usize)
-    }
-}
-
-/// A box around a body and a margin.
-fn grown<const D: usize>(body: &Deforming<'_, D>) -> [Vector<f64, D>; 2] {
+/// A box around the points of a body's surface and a margin.
+fn grown<const D: usize>(body: &Deforming<'_, D>, places: &[Vector<f64, D>]) -> [Vector<f64, D>; 2] {
     let margin = Vector([MARGIN * body.interior.form.cell; D]);
-    let [low, high] = body.interior.bounds();
+    let none = [Vector([f64::INFINITY; D]), Vector([f64::NEG_INFINITY; D])];
+    let [low, high] = places.iter().fold(none, |[low, high], at| {
+        [Vector::from_fn(|k| low[k].min(at[k])), Vector::from_fn(|k| high[k].max(at[k]))]
+    });
     [low - margin, high + margin]
 }
 

@@ -33,6 +33,7 @@ struct Meeting<const D: usize> {
     friction: Friction,
     gravity: Vector<f64, D>,
     known: Vec<Memory>,
+    neighbours: Neighbours<D>,
     /// Energy of layers, and taken by friction.
     stored: f64,
     rubbed: f64,
@@ -50,6 +51,7 @@ impl<const D: usize> Meeting<D> {
             friction: SMOOTH,
             gravity: Vector::ZERO,
             known: Vec::new(),
+            neighbours: Neighbours::default(),
             stored: 0.0,
             rubbed: 0.0,
             time: 0.0,
@@ -81,10 +83,12 @@ impl<const D: usize> Meeting<D> {
             })
             .collect();
         let rule = |_: &Touch<D>| friction;
-        let mut touches = find(&bodies, &grounds, &self.known, &|_, _| true);
+        let all = (&bodies[..], &grounds[..]);
+        let mut touches = find(all, &self.known, &|_, _| true, &mut self.neighbours);
         press(&mut bodies, &mut touches, &rule);
         bodies.iter_mut().for_each(|body| body.interior.accelerate(dt, gravity));
         self.known = slip(&bodies, &grounds, (&mut touches, dt), &rule);
+        self.neighbours.moved((&bodies, &grounds), dt);
         bodies.iter_mut().for_each(|body| body.interior.advance(dt));
         drop(bodies);
         self.bodies.iter_mut().for_each(|(alone, ..)| alone.strain(dt));
@@ -113,6 +117,48 @@ impl<const D: usize> Meeting<D> {
 
 fn disk(x: f64, y: f64) -> Shape {
     Shape::disk([x, y], 1.0)
+}
+
+/// Points touch whether their neighbours were sought in this step or before, to the bit.
+#[test]
+fn neighbours_of_before_find_what_those_of_now_find() {
+    fn compare<const D: usize>(mut make: impl FnMut() -> Meeting<D>, until: f64) {
+        let (mut one, mut other) = (make(), make());
+        let mut touched = 0;
+        while one.time < until {
+            other.neighbours = Neighbours::default();
+            one.step(0.4);
+            other.step(0.4);
+            assert_eq!(one.known, other.known);
+            touched += one.known.len();
+        }
+        assert!(touched > 100, "{touched}");
+    }
+    let speed = 0.04 * p_wave();
+    let rough = Friction { at_rest: 0.3, kinetic: 0.3, ..SMOOTH };
+    let disks = || Meeting {
+        friction: rough,
+        gravity: Vector([0.0, -0.02 * p_wave() * p_wave()]),
+        grounds: vec![Ground { point: [0.0, -1.6, 0.0], normal: [0.1, 0.995, 0.0] }],
+        ..Meeting::<2>::new().with(disk(-1.01, -0.4), 0.125, |_| Vector([speed, 0.0])).with(
+            disk(1.01, 0.4),
+            0.125,
+            |_| Vector([-speed, 0.0]),
+        )
+    };
+    compare(disks, 10.0 / p_wave());
+    let arch = Shape::rectangle([0.0, -1.0], [3.0, 1.0]).without(Shape::rectangle([0.8, -0.3], [4.0, 0.3]));
+    let close = move |x: Vector<f64, 2>| Vector([0.0, -4.0 * speed * x[1].signum() * (x[0] / 3.0).powi(2)]);
+    compare(|| Meeting::<2>::new().with(arch.clone(), 0.15, close), 15.0 / p_wave());
+    let cubes = || Meeting {
+        friction: rough,
+        ..Meeting::<3>::new()
+            .with(Shape::ball([0.0; 3], 1.0), 0.25, |_| Vector([speed, 0.0, 0.1 * speed]))
+            .with(Shape::Box { min: [1.01, -1.0, -0.5], max: [2.01, 1.0, 1.5] }, 0.25, |_| {
+                Vector([-speed, 0.0, 0.0])
+            })
+    };
+    compare(cubes, 6.0 / p_wave());
 }
 
 /// A disk bounces off a plane at a twenty-fifth of its wave speed.
@@ -319,7 +365,7 @@ fn a_dragged_block_rubs_by_its_coefficient() {
         let mut meeting =
             Meeting::<2>::new().with(Shape::rectangle([0.0, 0.0], [2.0, 1.0]), 1.0 / n, |_| Vector::ZERO);
         meeting.grounds.push(Ground { point: [0.0; 3], normal: [0.0, 1.0, 0.0] });
-        let law = FrictionMemory { length: 1e-4 * scale, speed: 0.01 * scale / time };
+        let law = FrictionMemory { length: 1.0, speed: p_wave() / 5.0 };
         meeting.friction = Friction { at_rest: 0.5, kinetic: 0.5, memory: memory.then_some(law), ..SMOOTH };
         let face: Vec<usize> = (0..meeting.bodies[0].2.len())
             .filter(|&i| meeting.bodies[0].2[i].place[0] > 2.0 - 1e-9)

@@ -19,7 +19,7 @@ pub struct Alone<const D: usize> {
     pub interior: Interior<D>,
     pub particles: Particles<f64, D>,
     pub matter: Matter<f64>,
-    table: Table<f64, D>,
+    pub table: Table<f64, D>,
     /// Speed of the fastest wave in undeformed lengths [m/s].
     pub signal: f64,
 }

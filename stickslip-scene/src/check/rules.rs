@@ -4,7 +4,7 @@ use super::neighbours::pairs_within;
 use super::table::short;
 use super::warning::Warning;
 use crate::geometry::Bounds;
-use crate::scene::{ContactLaw, ContactRule, FrictionMemory, RuleNames, Scene};
+use crate::scene::{ContactLaw, ContactRule, FrictionMemory, Interior, RuleNames, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,9 +23,11 @@ pub struct RuleReport {
     pub friction: f64,
     /// Coefficient of friction of surfaces that slip fast.
     pub kinetic_friction: f64,
-    /// How friction follows a change of pressure; `None`: at once.
+    /// How friction follows a change of pressure, where the rule says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_memory: Option<FrictionMemory>,
+    /// Whether it follows as is usual for bodies on grids of their own, between some of the pairs.
+    pub usual_memory: bool,
     /// Whether the rule says what its friction is; without, it is 0.
     pub friction_given: bool,
     /// Names of two bodies each, in the order of the scene.
@@ -57,8 +59,14 @@ impl RuleReport {
 
     /// How friction follows a change of pressure, if not at once.
     fn memory(&self) -> String {
-        let Some(FrictionMemory { length, speed }) = self.friction_memory else { return String::new() };
-        format!(", with a memory of {} m and {} m/s", short(length), short(speed))
+        match self.friction_memory {
+            Some(FrictionMemory { length: 0.0, .. }) => String::new(),
+            Some(FrictionMemory { length, speed }) => {
+                format!(", with a memory of {} m and {} m/s", short(length), short(speed))
+            }
+            None if self.usual_memory => ", with a memory of five transits of a wave".to_string(),
+            None => String::new(),
+        }
     }
 }
 
@@ -78,8 +86,19 @@ pub(super) fn rule_reports(scene: &Scene, boxes: &[Bounds]) -> Vec<RuleReport> {
             let ContactRule { law, friction, kinetic_friction, friction_memory, friction_given, .. } =
                 rule.map_or_else(ContactRule::default, |rule| scene.contact[rule].clone());
             let pairs = Vec::new();
-            RuleReport { rule, law, friction, kinetic_friction, friction_memory, friction_given, pairs }
+            RuleReport {
+                rule,
+                law,
+                friction,
+                kinetic_friction,
+                friction_memory,
+                usual_memory: false,
+                friction_given,
+                pairs,
+            }
         });
+        let remembers = [a, b].iter().any(|&body| scene.interior(body) == Interior::Reference);
+        report.usual_memory |= remembers && report.friction_memory.is_none() && report.friction.is_normal();
         report.pairs.push([a, b].map(|body| scene.bodies[body].name.clone()));
     }
     reports.into_values().collect()

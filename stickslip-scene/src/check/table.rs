@@ -348,6 +348,11 @@ mod tests {
         let row =
             "\ndisk 0 and disk 1  surface     0.3, with a memory of 1.000e-4 m and 0.01 m/s, by contact[0]\n";
         assert!(text.contains(row), "{text}");
+        scene.contact[0].friction_memory = None;
+        let text = report(&scene).expect("no problem").to_string();
+        let row =
+            "\ndisk 0 and disk 1  surface     0.3, with a memory of five transits of a wave, by contact[0]\n";
+        assert!(text.contains(row), "{text}");
     }
 
     #[test]

@@ -27,14 +27,13 @@ use crate::grid::Disjoint;
 use crate::lanes::{Laned, Processor};
 use crate::load::LoadSums;
 use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
-use crate::scene::{ContactLaw, Interior as Kind, Problem, Scene};
+use crate::scene::{ContactLaw, FrictionMemory, Interior as Kind, Problem, Scene};
 use crate::tensor::{Vector, cross};
 use crate::threads::each;
 use rigid::RigidBody;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Instant;
-use stickslip_reference::cells::Table;
 use stickslip_reference::contact::{
     Deforming, Friction, Memory, Met, Partner, Rigid, Touch, find, press, slip,
 };
@@ -42,14 +41,15 @@ use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
 
 /// What of such a body never changes.
-pub struct ReferenceBody<T, const D: usize> {
+pub struct ReferenceBody<const D: usize> {
     /// Its number among all bodies.
     pub body: usize,
     shape: Shape,
     surface: Vec<SurfacePoint<D>>,
-    table: Table<T, D>,
     /// Moduli of its longitudinal and its shear wave at rest [Pa].
     moduli: [f64; 2],
+    /// How friction on it follows a change of pressure where its rule does not say so.
+    memory: FrictionMemory,
 }
 
 /// What such bodies are between two steps.
@@ -85,7 +85,7 @@ struct Homeward {
 /// alone is stable at 0.9 cells, and one in contact at 0.6, where the usual Courant number is 0.4.
 const LARGER_STEPS: f64 = 1.5;
 
-impl<T: Laned, const D: usize> ReferenceBody<T, D> {
+impl<const D: usize> ReferenceBody<D> {
     /// That of a body of a scene, and its nodes before anything moves, with velocities by place [m/s].
     ///
     /// # Errors
@@ -105,18 +105,24 @@ impl<T: Laned, const D: usize> ReferenceBody<T, D> {
         };
         let form = Arc::new(Form::<D>::new(&body.shape, scene.discretization.cell).map_err(no_grid)?);
         let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
+        let sides = body.shape.bounds(D).map_or([f64::INFINITY; 3], |bounds| bounds.size());
+        let width = sides[..D].iter().copied().fold(f64::INFINITY, f64::min);
         let nodes =
             Interior::new(form.clone(), material.density, |place| Vector::of(velocity(place.space())));
         let constants = ReferenceBody {
             body: number,
             shape: body.shape.clone(),
             surface: points(&body.shape, &form),
-            table: Table::new(&form),
             moduli: [modulus, material.law.elastic().shear_modulus.max(1e-3 * modulus)],
+            memory: FrictionMemory { length: width, speed: (modulus / material.density).sqrt() / TRANSITS },
         };
         Ok((constants, nodes))
     }
 }
+
+/// Transits of a longitudinal wave through the narrowest side of a body in which friction on it follows pressure, where
+/// no rule says how: a block that a spring drags slowly rubs by its coefficient from some four on.
+const TRANSITS: f64 = 5.0;
 
 /// Whether a body of a scene is one.
 pub(super) fn is_reference(scene: &Scene, body: usize) -> bool {
@@ -178,8 +184,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             settings.rules.rule(settings.rules.number(settings.references[a].body, other)).law
                 != ContactLaw::None
         };
-        let rule = |touch: &Touch<D>| friction(&settings.rules, touch);
-        let mut touches = find(&bodies, &rigid, &state.references.touching, &meet);
+        let rule = |touch: &Touch<D>| friction((&settings.rules, &settings.references), touch);
+        let all = (&bodies[..], &rigid[..]);
+        let mut touches = find(all, &state.references.touching, &meet, &mut workspace.neighbours);
         press(&mut bodies, &mut touches, &rule);
         let mut own = Homeward::default();
         for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {
@@ -229,6 +236,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }
         }
         state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
+        workspace.neighbours.moved((&bodies, &rigid), dt);
         books::book(&mut workspace.reference_touches, &rigid, (&touches, dt));
         if let Some(among) = among {
             workspace.reference_touches.retain(|touch| among.keeps(touch.bodies));
@@ -247,7 +255,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let mut found = vec![Found::NOTHING; settings.references.len()];
         let (bodies, nodes) = (Disjoint::new(&mut state.bodies), Disjoint::new(&mut state.references.nodes));
         each(&mut found, 1, |place, found| {
-            let ReferenceBody { body, table, .. } = &settings.references[place];
+            let (body, table) = (&settings.references[place].body, &settings.tables[place]);
             // SAFETY: every body and its nodes belong to one entry.
             let (here, interior) = unsafe { (bodies.get(*body), nodes.get(place)) };
             let Body::Here(here) = here else { return };
@@ -370,15 +378,24 @@ fn damp<const D: usize>(
     taken
 }
 
-/// Friction at a point, by the rule of its pair.
-fn friction<T: Laned, const D: usize>(rules: &Rules<T>, touch: &Touch<D>) -> Friction {
+/// Friction at a point, by the rule of its pair; without a memory there, with that of the body that is slower.
+fn friction<T: Laned, const D: usize>(
+    (rules, references): (&Rules<T>, &[ReferenceBody<D>]),
+    touch: &Touch<D>,
+) -> Friction {
     let [a, b] = [touch.memory.body as usize, touch.memory.partner as usize];
     let rule = rules.rule(rules.number(a, b));
     let double = rule.friction.double();
+    let own = references[touch.side].memory;
+    let usual = match touch.met {
+        Met::Deforming(b, _) if references[b].memory.time() > own.time() => references[b].memory,
+        _ => own,
+    };
+    let memory = rule.friction_memory.unwrap_or(usual);
     Friction {
         at_rest: double.at_rest,
         kinetic: double.kinetic,
         decay_speed: double.decay_speed,
-        memory: rule.friction_memory,
+        memory: (memory.length > 0.0).then_some(memory),
     }
 }

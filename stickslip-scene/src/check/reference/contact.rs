@@ -137,7 +137,7 @@ fn unlike(scene: &Scene, [a, b]: [usize; 2], (rule, other): (Option<usize>, Side
 fn memory(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Problem> {
     let number = rule?;
     let rule = &scene.contact[number];
-    rule.friction_memory?;
+    rule.friction_memory.filter(|memory| memory.length > 0.0)?;
     let [name, other] = [a, b].map(|body| &scene.bodies[body].name);
     // Those that are glued or left alone have no friction at all.
     (!matches!(rule.law, ContactLaw::None | ContactLaw::Glued)).then(|| Problem {

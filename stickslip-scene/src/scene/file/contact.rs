@@ -30,7 +30,8 @@ table! {
         #[schemars(extend("default" = 0))]
         friction_decay_speed: Option<QuantityInput<Velocity>>,
         /// Slip over which friction follows a change of pressure [m], with `friction_memory_speed` beside it; between
-        /// bodies with interior = "reference". By default friction follows at once.
+        /// bodies with interior = "reference"; 0: at once. By default within five transits of a wave through the slower
+        /// body.
         friction_memory_length: Option<QuantityInput<Length>>,
         /// Speed at which surfaces that do not slip follow a change of pressure, as slip does [m/s]; with
         /// `friction_memory_length`.
@@ -210,8 +211,11 @@ impl Contact {
     ) -> Result<Option<FrictionMemory>, Fault> {
         let (length, speed) = match (&self.friction_memory_length, &self.friction_memory_speed) {
             (Some(length), Some(speed)) => (length, speed),
+            (Some(length), None) if length.value(context)? == 0.0 => {
+                return Ok(Some(FrictionMemory { length: 0.0, speed: 0.0 }));
+            }
             (Some(length), None) => {
-                return Err(length.node().fault("a `friction_memory_speed` beside it"));
+                return Err(length.node().fault("0, or a `friction_memory_speed` beside it"));
             }
             (None, Some(speed)) => {
                 return Err(speed.node().fault("a `friction_memory_length` beside it"));
