@@ -71,17 +71,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         saved: &SavedState,
         velocities: StartVelocities,
     ) -> Result<(), RestoreError> {
-        if let Some(reference) = self.settings.references.first() {
-            let name = self.name_of(reference.body);
-            return Err(RestoreError(format!(
-                "body `{name}` has interior = \"reference\" in the scene, which begins from no other run yet"
-            )));
-        }
+        let nodes = self.carried_nodes(saved, velocities)?;
         let bodies = &self.state.bodies;
         let fresh = |body: usize, numbers: &[u32]| Ok(bodies[body].particles.with_numbers(numbers));
         let carried = self.carried((saved, velocities), None, &fresh)?;
         self.find_overlap(&carried, None)?;
         self.put_in(carried);
+        self.begin_nodes(nodes);
         self.begin_points();
         self.begin_sums(saved);
         Ok(())

@@ -29,7 +29,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         if self.among.is_some() {
             return Err(WriteError::Shared);
         }
-        if self.reference_of(number).is_some() {
+        let reference = self.reference_of(number);
+        // The rest of such a body follows from where its nodes are.
+        if reference.is_some() && name != "velocity" {
             return Err(WriteError::Fixed { name: name.to_string() });
         }
         let body = &self.state.bodies[number];
@@ -56,14 +58,18 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
         let gravity = self.settings.gravity.constant().unwrap_or_default();
-        let before = Holding::of_particles(&self.state.bodies[number].totals(self.kernels), gravity);
-        let particles = &mut self.state.bodies[number].particles;
-        for entry in 0..entries {
-            let line = particles.line_mut(first + entry).iter_mut();
-            line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
+        let before = Holding::of_particles(&self.totals_of(number), gravity);
+        if let Some(place) = reference {
+            self.put_velocities(place, values);
+        } else {
+            let particles = &mut self.state.bodies[number].particles;
+            for entry in 0..entries {
+                let line = particles.line_mut(first + entry).iter_mut();
+                line.zip(values[entry..].iter().step_by(entries)).for_each(|(x, &value)| *x = T::of(value));
+            }
+            particles.compare();
         }
-        particles.compare();
-        let after = Holding::of_particles(&self.state.bodies[number].totals(self.kernels), gravity);
+        let after = Holding::of_particles(&self.totals_of(number), gravity);
         self.book_written(number, [before, after]);
         Ok(())
     }

@@ -42,6 +42,7 @@ pub use hertz::{Hertz, HertzPatch};
 pub use loads::LoadReport;
 pub use memory::Footprint;
 pub use press_fit::{Interference, interferences};
+pub(crate) use reference::choose_interior;
 pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
 pub use rules::{RuleReport, pairs_without_friction};
 pub use warning::Warning;

@@ -73,6 +73,7 @@ impl Discretization {
             particles_per_side: 2,
             basis: BasisKind::default(),
             interior: Interior::default(),
+            because: None,
         }
     }
 }

@@ -244,6 +244,9 @@ pub struct Discretization {
     /// Where bodies that deform and do not say so are computed.
     #[serde(skip_serializing_if = "is_grid")]
     pub interior: Interior,
+    /// Why that was chosen, where the scene does not say it.
+    #[serde(skip)]
+    pub because: Option<String>,
 }
 
 /// Whether bodies are on the grid: a record of a scene does not say so.

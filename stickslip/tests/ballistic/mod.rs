@@ -225,6 +225,7 @@ pub fn scene() -> Scene {
             particles_per_side: 2,
             basis: BasisKind::Gimp,
             interior: Default::default(),
+            because: None,
         },
         domain: None,
         time: Time {

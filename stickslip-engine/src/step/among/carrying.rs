@@ -26,6 +26,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         (rest, velocities): (&SavedState, StartVelocities),
         (find, look): (Find, Look),
     ) -> Result<(), NotTakenUp> {
+        let nodes = self.carried_nodes(rest, velocities)?;
         let mut state = rest.clone();
         first_problem(&*ranks, fill(&mut state.bodies, find))?;
         check_found(&*ranks, &mut state.bodies)?;
@@ -59,6 +60,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.check_numbers(&*ranks, (&of_bodies, &missing))?;
         self.join_others(ranks, (census, of_bodies));
         self.send_home();
+        self.begin_nodes(nodes);
         self.settings.loads = loads(scene, (&self.state.bodies, &self.settings.filled), true);
         self.begin_points();
         self.begin_sums(rest);

@@ -18,24 +18,25 @@ mod loads;
 mod rigid;
 
 use super::Engine;
-use crate::body::{Body, Totals};
+use crate::body::{Body, Particle, Totals};
 use crate::contact::Rules;
-use crate::door::StepError;
+use crate::door::{RestoreError, SavedState, StepError};
 use crate::geometry::Shape;
-use crate::geometry::form::{Form, NoForm};
+use crate::geometry::form::{Form, NoForm, Weights};
 use crate::grid::Disjoint;
 use crate::lanes::{Laned, Processor};
 use crate::load::LoadSums;
 use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
-use crate::scene::{ContactLaw, FrictionMemory, Interior as Kind, Problem, Scene};
+use crate::scene::{ContactLaw, FrictionMemory, Interior as Kind, Problem, Scene, StartVelocities};
 use crate::tensor::{Vector, cross};
 use crate::threads::each;
 use rigid::RigidBody;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Partner, Rigid, Touch, find, press, slip,
+    Deforming, Friction, Memory, Met, Neighbours, Partner, Rigid, Touch, find, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -66,6 +67,8 @@ pub struct References<const D: usize> {
 /// The nodes of such a body as data: numbers one behind the other.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SavedNodes {
+    /// Number of the body among all.
+    body: usize,
     places: Vec<f64>,
     velocities: Vec<f64>,
     forces: Vec<f64>,
@@ -314,6 +317,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let References { nodes, touching, layers } = &self.state.references;
         let mut saved: Vec<SavedNodes> = (nodes.iter().enumerate())
             .map(|(place, nodes)| SavedNodes {
+                body: self.settings.references[place].body,
                 places: flat(&nodes.places),
                 velocities: flat(&nodes.velocities),
                 forces: flat(&nodes.forces),
@@ -334,25 +338,142 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// Whether saved nodes are those of these bodies.
     pub(super) fn are_nodes(&self, saved: &[SavedNodes]) -> bool {
         let nodes = &self.state.references.nodes;
-        let fits = |(saved, nodes): (&SavedNodes, &Interior<D>)| {
-            [&saved.places, &saved.velocities, &saved.forces]
-                .iter()
-                .all(|all| all.len() == D * nodes.places.len() && all.iter().all(|x| x.is_finite()))
+        saved.len() == nodes.len() && saved.iter().zip(nodes).all(|(saved, nodes)| saved.fits(nodes))
+    }
+
+    /// What begins as it was in another run: nodes of bodies of the same names, by their places here, and points that
+    /// touched.
+    ///
+    /// # Errors
+    /// A body is on a grid of its own in one of the two only, or is another.
+    pub(super) fn carried_nodes(
+        &self,
+        saved: &SavedState,
+        velocities: StartVelocities,
+    ) -> Result<CarriedNodes, RestoreError> {
+        let named: HashMap<&str, usize> =
+            saved.bodies.iter().zip(0..).map(|(body, number)| (body.name.as_str(), number)).collect();
+        let mut carried = CarriedNodes::default();
+        let mut numbers: HashMap<u32, u32> = HashMap::new();
+        for number in 0..self.state.bodies.len() {
+            let Some(&there) = named.get(self.name_of(number)) else { continue };
+            numbers.insert(there as u32, number as u32);
+            let off = |what: &str| Err(RestoreError::new(format!("body `{}` {what}", self.name_of(number))));
+            let nodes = saved.nodes.iter().find(|nodes| nodes.body == there);
+            match (self.reference_of(number), nodes) {
+                (None, None) => {}
+                (Some(_), None) if saved.of_snapshot => {
+                    return off(
+                        "has interior = \"reference\" in the scene, which begins from checkpoints only, \
+                                not from snapshots: interior = \"grid\" begins from both",
+                    );
+                }
+                (Some(_), None) => {
+                    return off("has interior = \"reference\" in the scene, and \"grid\" in it");
+                }
+                (None, Some(_)) => {
+                    return off("has interior = \"grid\" in the scene, and \"reference\" in it");
+                }
+                (Some(place), Some(nodes)) if !nodes.fits(&self.state.references.nodes[place]) => {
+                    return off("has other nodes in it: its shape or its cell is another");
+                }
+                (Some(place), Some(nodes)) => {
+                    let mut nodes = nodes.clone();
+                    if velocities == StartVelocities::Zero {
+                        nodes.velocities.fill(0.0);
+                    }
+                    carried.nodes.push((place, nodes));
+                }
+            }
+        }
+        let here = |memory: &Memory| {
+            let [body, partner] = [memory.body, memory.partner].map(|number| numbers.get(&number).copied());
+            Some(Memory { body: body?, partner: partner?, ..*memory })
         };
-        saved.len() == nodes.len() && saved.iter().zip(nodes).all(fits)
+        carried.touching = saved.touching.iter().filter_map(here).collect();
+        carried.touching.sort_by_key(|memory| (memory.body, memory.point, memory.partner));
+        Ok(carried)
+    }
+
+    /// Begins with these nodes.
+    pub(super) fn begin_nodes(&mut self, carried: CarriedNodes) {
+        let References { nodes, touching, layers } = &mut self.state.references;
+        layers.resize(nodes.len(), 0.0);
+        for (place, saved) in &carried.nodes {
+            saved.put_in(&mut nodes[*place]);
+            layers[*place] = saved.layer;
+        }
+        *touching = carried.touching;
+        self.workspace.neighbours = Neighbours::default();
+        for place in 0..self.settings.references.len() {
+            self.order_by_number(self.settings.references[place].body);
+        }
+    }
+
+    /// Gives a body the velocities of its particles [m/s], as nearly as its functions can: what is left is shared out
+    /// by mass, again and again.
+    pub(super) fn put_velocities(&mut self, place: usize, values: &[f64]) {
+        let wanted: Vec<Vector<f64, D>> = vectors(values);
+        let body = self.settings.references[place].body;
+        let nodes = &mut self.state.references.nodes[place];
+        let form = nodes.form.clone();
+        let weights: Vec<Weights<D>> = form.places.iter().map(|&place| form.weights(place)).collect();
+        let mut shared = vec![0.0; nodes.masses.len()];
+        for (weights, volume) in weights.iter().zip(&form.volumes) {
+            weights.each(|k, value, _| shared[weights.node + form.offsets[k] as usize] += value * volume);
+        }
+        nodes.velocities.fill(Vector::ZERO);
+        for _ in 0..SWEEPS {
+            let mut more = vec![Vector::<f64, D>::ZERO; shared.len()];
+            for ((weights, volume), wanted) in weights.iter().zip(&form.volumes).zip(&wanted) {
+                let left = (*wanted - nodes.at(weights, &nodes.velocities)) * *volume;
+                weights.each(|k, value, _| more[weights.node + form.offsets[k] as usize] += left * value);
+            }
+            for node in (0..shared.len()).filter(|&node| nodes.masses[node] > 0.0) {
+                nodes.velocities[node] += more[node] * (1.0 / shared[node]);
+            }
+            nodes.follow();
+        }
+        let particles = &mut self.state.bodies[body].particles;
+        for (i, weights) in weights.iter().enumerate() {
+            let velocity = nodes.at(weights, &nodes.velocities);
+            let particle = particles.get(i);
+            particles.set(i, &Particle { velocity: Vector::from_fn(|k| T::of(velocity[k])), ..particle });
+        }
     }
 
     /// Goes on with these nodes.
     pub(super) fn take_up_nodes(&mut self, saved: &[SavedNodes], touching: Vec<Memory>) {
-        for (nodes, saved) in self.state.references.nodes.iter_mut().zip(saved) {
-            nodes.places = vectors(&saved.places);
-            nodes.velocities = vectors(&saved.velocities);
-            nodes.forces = vectors(&saved.forces);
-        }
+        self.state.references.nodes.iter_mut().zip(saved).for_each(|(nodes, saved)| saved.put_in(nodes));
         self.state.references.layers = saved.iter().map(|saved| saved.layer).collect();
         self.state.references.touching = touching;
     }
 }
+
+impl SavedNodes {
+    /// Whether they are those of such a body.
+    fn fits<const D: usize>(&self, nodes: &Interior<D>) -> bool {
+        [&self.places, &self.velocities, &self.forces]
+            .iter()
+            .all(|all| all.len() == D * nodes.places.len() && all.iter().all(|x| x.is_finite()))
+    }
+
+    fn put_in<const D: usize>(&self, nodes: &mut Interior<D>) {
+        nodes.places = vectors(&self.places);
+        nodes.velocities = vectors(&self.velocities);
+        nodes.forces = vectors(&self.forces);
+    }
+}
+
+/// Nodes of bodies as they were in another run, by their places here, and points that touched there.
+#[derive(Debug, Default)]
+pub struct CarriedNodes {
+    nodes: Vec<(usize, SavedNodes)>,
+    touching: Vec<Memory>,
+}
+
+/// Sweeps by which nodes take the velocities of particles.
+const SWEEPS: usize = 50;
 
 fn flat<const D: usize>(all: &[Vector<f64, D>]) -> Vec<f64> {
     all.iter().flat_map(|v| v.0).collect()

@@ -13,7 +13,7 @@ use super::settings::is_over_arrays;
 use super::table::short;
 use crate::geometry::{Curved, Shape};
 use crate::material::Material;
-use crate::scene::{Action, FACES, Face, Interior, NamedMaterial, Problem, Scene, VolumeChange};
+use crate::scene::{Action, Body, FACES, Face, Interior, NamedMaterial, Problem, Scene, VolumeChange};
 
 /// What a body may not have, by its number.
 const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] = &[
@@ -56,6 +56,41 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     let found = found.or_else(|| bodies.find_map(|body| OF_BODY.iter().find_map(|row| row(scene, body))));
     found.map_or_else(|| contact::check(scene), Err)
 }
+
+/// Chooses where bodies are computed that do not say so, in a scene that does not say so either: on grids of their own
+/// where all of them are elastic and nothing asks for what these have not, such as a key of the common grid. It says
+/// why not.
+pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
+    let open = |body: &Body| !body.is_rigid() && body.interior.is_none();
+    let Some(first) = scene.bodies.iter().position(open) else { return };
+    scene.discretization.interior = Interior::Reference;
+    let inelastic = || {
+        let mut open = (first..scene.bodies.len()).filter(|&body| open(&scene.bodies[body]));
+        let body = open.find(|&body| !stays_whole(material(scene, body)))?;
+        let law = material(scene, body).law.name();
+        Some(format!("`{}` is of a material that may flow or part, `{law}`", scene.bodies[body].name))
+    };
+    let because = (wanted.map(|key| format!("`{key}` is written")))
+        .or_else(|| scene.start.is_some().then(|| "it begins from another run".to_string()))
+        .or_else(inelastic)
+        .or_else(|| check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found)));
+    if let Some(why) = because {
+        scene.discretization.interior = Interior::Grid;
+        scene.discretization.because = Some(why);
+    }
+}
+
+/// Whether a material is elastic and keeps its shape.
+fn stays_whole(material: &NamedMaterial) -> bool {
+    let elastic = material.law.elastic();
+    let is_solid = elastic.shear_modulus > LEAST_SHEAR * elastic.bulk_modulus;
+    is_solid
+        && material.law.trusts_deformation()
+        && !matches!(material.law, Material::Damage(_) | Material::Custom(_))
+}
+
+/// Shear over bulk modulus of a solid, at least; below it material is a fluid, or locks.
+const LEAST_SHEAR: f64 = 1e-3;
 
 /// Whether there is a body of that number, with that interior.
 fn is_reference(scene: &Scene, body: usize) -> bool {

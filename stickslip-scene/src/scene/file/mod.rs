@@ -44,6 +44,7 @@ use super::error::Fault;
 use super::parameters::{Dependence, Parameters};
 use super::source::{Declared, DocumentNode, Source, Told, Value};
 use super::{Damping, Dimension, Gravity, Scene};
+use crate::check;
 use named_shapes::NamedShapes;
 use quantity::Acceleration;
 use read::{Read, table};
@@ -231,6 +232,18 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<Resolve
     };
     if scene.time.relax.is_some() && !given {
         scene.outputs.tables = scene.rows_of_relaxation();
+    }
+    if file.space.interior.is_none() {
+        let outputs = file.outputs.as_ref();
+        let of_grid = [
+            ("space.basis", file.space.basis.is_some()),
+            ("time.transfer", file.time.transfer.is_some()),
+            ("time.stress_update", file.time.stress_update.is_some()),
+            ("time.pic_share", file.time.pic_share.is_some()),
+            ("outputs.grid", outputs.is_some_and(|outputs| outputs.grid.is_some())),
+        ];
+        let wanted = of_grid.into_iter().find(|(_, is_given)| *is_given).map(|(key, _)| key);
+        check::choose_interior(&mut scene, wanted);
     }
     let mut told = told.take();
     told.extend(unused::keys(source.root(), (&scene, &shapes)));
