@@ -54,14 +54,19 @@ fn a_law_is_its_own_file_and_a_line_on_the_list() {
         let lines: Vec<&str> = list.lines().filter(|line| says(line, kind)).collect();
         assert_eq!(lines, [format!("    {law} {kind};")]);
     }
+    // Laws may share a column where it means the same.
+    let laws: Vec<String> = LAWS.iter().map(|law| file(law.name)).collect();
     for (law, remembered) in [
         ("von_mises", "plastic_strain"),
         ("viscoelastic", "viscous_strain_1"),
         ("viscoelastic", "viscous_dissipation"),
+        ("johnson_cook", "temperature_rise"),
         ("damage", "damage_strain"),
         ("damage", "damage_dissipation"),
     ] {
-        assert_eq!(where_said(remembered), [file(law)], "{remembered}");
+        let said = where_said(remembered);
+        assert!(said.contains(&file(law)), "{remembered}");
+        assert!(said.iter().all(|name| laws.contains(name)), "{remembered}: {said:?}");
     }
 }
 

@@ -95,6 +95,12 @@ pub const RATIO: ConstantUnit = ConstantUnit { powers: [0, 0, 0], symbol: "" };
 pub const PRESSURE: ConstantUnit = ConstantUnit { powers: [1, -1, -2], symbol: "Pa" };
 /// Of a time.
 pub const TIME: ConstantUnit = ConstantUnit { powers: [0, 0, 1], symbol: "s" };
+/// Of a rate.
+pub const RATE: ConstantUnit = ConstantUnit { powers: [0, 0, -1], symbol: "1/s" };
+/// Of a viscosity.
+pub const VISCOSITY: ConstantUnit = ConstantUnit { powers: [1, -1, -1], symbol: "Pa*s" };
+/// Of an energy per volume.
+pub const ENERGY_PER_VOLUME: ConstantUnit = ConstantUnit { powers: [1, -1, -2], symbol: "J/m^3" };
 /// Of an energy per area.
 pub const ENERGY_PER_AREA: ConstantUnit = ConstantUnit { powers: [1, 0, -2], symbol: "J/m^2" };
 

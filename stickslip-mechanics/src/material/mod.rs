@@ -111,6 +111,9 @@ macro_rules! laws {
 laws! { $
     neo_hookean NeoHookean;
     hypoelastic Hypoelastic;
+    mooney_rivlin MooneyRivlin;
+    fluid Fluid;
+    johnson_cook JohnsonCook;
     von_mises VonMises;
     viscoelastic Viscoelastic;
     damage Damage;
@@ -316,6 +319,9 @@ impl<T: Real> Material<T> {
         Some((motion, stress))
     }
 }
+
+#[cfg(test)]
+pub(crate) mod trials;
 
 #[cfg(test)]
 mod tests {

@@ -74,6 +74,72 @@ pub const CASES: &[Cases] = &[
     },
     Cases {
         scene: PLANE,
+        with: &[("materials.m", "{ density = 1, mooney_rivlin = { c10 = 1e5, bulk_modulus = 1e6 } }")],
+        keys: &[
+            ("materials.m.mooney_rivlin", "{ c10 = 2e5, bulk_modulus = 1e6 }"),
+            ("materials.m.mooney_rivlin.c10", "2e5"),
+            ("materials.m.mooney_rivlin.c01", "1e5"),
+            ("materials.m.mooney_rivlin.bulk_modulus", "2e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("materials.m", "{ density = 1, fluid = { bulk_modulus = 1e6, viscosity = 0.1 } }")],
+        keys: &[
+            ("materials.m.fluid", "{ bulk_modulus = 2e6 }"),
+            ("materials.m.fluid.bulk_modulus", "2e6"),
+            ("materials.m.fluid.pressure_exponent", "1.4"),
+            ("materials.m.fluid.tensile_strength", "0"),
+            ("materials.m.fluid.viscosity", "0.2"),
+            ("materials.m.fluid.yield_stress", "10"),
+            ("materials.m.fluid.flow_exponent", "0.5"),
+            ("materials.m.fluid.shear_modulus", "1e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, johnson_cook = { bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 1e3, \
+             thermal_exponent = 1, melting_temperature = 1000, heat_capacity = 1e6 } }",
+        )],
+        keys: &[
+            ("materials.m.johnson_cook", "{ bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 2e3 }"),
+            ("materials.m.johnson_cook.bulk_modulus", "2e6"),
+            ("materials.m.johnson_cook.shear_modulus", "2e6"),
+            ("materials.m.johnson_cook.yield_stress", "2e3"),
+            ("materials.m.johnson_cook.hardening_modulus", "1e3"),
+            ("materials.m.johnson_cook.hardening_exponent", "0.5"),
+            ("materials.m.johnson_cook.rate_coefficient", "0.1"),
+            ("materials.m.johnson_cook.reference_rate", "2"),
+            ("materials.m.johnson_cook.thermal_exponent", "2"),
+            ("materials.m.johnson_cook.melting_temperature", "2000"),
+            ("materials.m.johnson_cook.room_temperature", "300"),
+            ("materials.m.johnson_cook.heat_capacity", "2e6"),
+            ("materials.m.johnson_cook.heated_share", "1"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, johnson_cook = { young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 } }",
+        )],
+        keys: &[
+            ("materials.m.johnson_cook.young_modulus", "2e6"),
+            ("materials.m.johnson_cook.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, johnson_cook = { p_wave_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 } }",
+        )],
+        keys: &[("materials.m.johnson_cook.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
         with: &[(
             "materials.m",
             "{ density = 1, von_mises = { bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 1e3 } }",

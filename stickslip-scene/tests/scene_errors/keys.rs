@@ -152,8 +152,8 @@ fn laws_of_other_programs_have_an_answer() {
     for (other, answer) in [
         ("drucker_prager", "here: no law whose strength grows with the pressure"),
         ("cam_clay", "here: no law that hardens as it is compacted"),
-        ("johnson_cook", "here: `von_mises`, with yield_stress = A"),
-        ("mooney_rivlin", "here: `neo_hookean`, with shear_modulus = 2 (C10 + C01)"),
+        ("JC", "here: `johnson_cook`, with yield_stress = A"),
+        ("mooney", "here: `mooney_rivlin`, with c10"),
         ("elastic", "here: `hypoelastic`, Hooke's law"),
     ] {
         let text = edited(MINIMAL, law, &format!("{other} = {{ young_modulus = 1e6 }}"));

@@ -11,9 +11,9 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "here: `neo_hookean`, for large strains and rotations",
     ),
     (
-        &["mooneyrivlin", "mooney", "ogden", "yeoh", "arrudaboyce", "gent"],
-        "here: `neo_hookean`, with shear_modulus = 2 (C10 + C01), the same at small strain; what it lacks at large ones is \
-         a law of your own in Python, chapter 15",
+        &["mooney", "yeoh", "arrudaboyce", "gent"],
+        "here: `mooney_rivlin`, with c10, c01 and bulk_modulus; what it lacks at large strains is a law of your own in \
+         Python, chapter 15",
     ),
     (
         &[
@@ -29,19 +29,9 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "here: `von_mises`, with yield_stress and hardening_modulus",
     ),
     (
-        &[
-            "johnsoncook",
-            "john",
-            "sjc",
-            "sjcf",
-            "jc",
-            "jcf",
-            "steinberg",
-            "steinbergcochranguinan",
-            "zerilliarmstrong",
-        ],
-        "here: `von_mises`, with yield_stress = A and a hardening_modulus for B and n; hardening by the rate and softening \
-         by heat have no counterpart but a law of your own in Python, chapter 15",
+        &["john", "sjc", "sjcf", "jc", "jcf", "steinberg", "steinbergcochranguinan", "zerilliarmstrong"],
+        "here: `johnson_cook`, with yield_stress = A, hardening_modulus = B, hardening_exponent = n, rate_coefficient = C \
+         and thermal_exponent = m",
     ),
     (
         &["druckerprager", "dpm", "mohrcoulomb", "sand", "soil", "granular", "mudi", "muirheology"],
@@ -64,13 +54,26 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "here: no law that hardens as it is compacted; a law of your own in Python, chapter 15",
     ),
     (
-        &["newtonian", "newtonianfluid", "bingham", "fluid", "liquid", "water", "viscousfluid", "null"],
-        "here: `neo_hookean` with shear_modulus = 0 is a fluid without viscosity; viscous ones are laws of your own in \
-         Python, chapter 15",
+        &[
+            "newtonian",
+            "newtonianfluid",
+            "bingham",
+            "herschelbulkley",
+            "liquid",
+            "water",
+            "viscousfluid",
+            "null",
+            "tait",
+            "idealgas",
+            "gas",
+        ],
+        "here: `fluid`, with bulk_modulus, pressure_exponent (7 for water; of a gas its ratio of heat capacities, with \
+         bulk_modulus that times the pressure), viscosity and yield_stress",
     ),
     (
-        &["eos", "miegruneisen", "gruneisen", "tillotson", "jwl", "hiex", "shock", "idealgas", "gas", "seos"],
-        "here: no equation of state; a law of your own in Python, chapter 15",
+        &["eos", "miegruneisen", "gruneisen", "tillotson", "jwl", "hiex", "shock", "seos"],
+        "here: `fluid` has Tait's equation of state and that of gases; another one is a law of your own in Python, \
+         chapter 15",
     ),
     (
         &[
@@ -138,9 +141,14 @@ mod tests {
 
     #[test]
     fn names_are_found_as_other_programs_write_them() {
-        for name in
-            ["drucker_prager", "DruckerPrager", "Mohr-Coulomb", "cam_clay", "johnson_cook", "Mooney Rivlin"]
-        {
+        for name in [
+            "drucker_prager",
+            "DruckerPrager",
+            "Mohr-Coulomb",
+            "cam_clay",
+            "Zerilli Armstrong",
+            "arruda_boyce",
+        ] {
             assert!(answer(name).is_some_and(|text| text.starts_with("here: ")), "{name}");
         }
         assert_eq!(answer("rubber"), None);

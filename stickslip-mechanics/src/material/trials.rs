@@ -1,0 +1,117 @@
+//! Trials that tests put laws to: many motions, and waves in every direction.
+
+use super::tests::motion_of;
+use super::{Entries, Law, Motion};
+use crate::tensor::{Matrix, Symmetric};
+
+/// Numbers that look like chance and are the same in every run (Knuth's linear congruential generator).
+pub struct Chance(pub u64);
+
+impl Chance {
+    /// Between 0 and 1.
+    pub fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Between -1 and 1.
+    pub fn signed(&mut self) -> f64 {
+        2.0 * self.number() - 1.0
+    }
+
+    /// Entries between -1 and 1.
+    pub fn matrix(&mut self) -> Matrix<f64> {
+        Matrix::from_fn(|_, _| self.signed())
+    }
+
+    /// A direction.
+    pub fn direction(&mut self) -> [f64; 3] {
+        loop {
+            let vector = [self.signed(), self.signed(), self.signed()];
+            let square: f64 = vector.iter().map(|x| x * x).sum();
+            if (0.01..1.0).contains(&square) {
+                return vector.map(|x| x / square.sqrt());
+            }
+        }
+    }
+
+    /// A deformation that stretches by up to e^size along any axes.
+    pub fn deformation(&mut self, size: f64) -> Matrix<f64> {
+        let axes = Matrix::rotation_by(std::array::from_fn(|_| 3.0 * self.signed()));
+        let turned = Matrix::rotation_by(std::array::from_fn(|_| 3.0 * self.signed()));
+        let stretches: [f64; 3] = std::array::from_fn(|_| (size * self.signed()).exp());
+        axes * Matrix::from_fn(|i, j| if i == j { stretches[i] } else { 0.0 }) * turned
+    }
+}
+
+/// Paths of ten steps from rest: tiny strains, large ones, none, and steps of no duration.
+/// Whatever a law answers is a number.
+pub fn answers_are_numbers<L: Law<f64>>(law: &L, paths: usize) {
+    let mut chance = Chance(7);
+    for path in 0..paths {
+        let size = [0.0, 1e-12, 1e-6, 1e-3, 0.05, 0.3, 1.0][path % 7];
+        let dt = [0.0, 1e-12, 1e-6, 1e-3, 1.0][path / 7 % 5];
+        let axial = path % 3 == 0;
+        let mut now = Motion { dt, ..motion_of(Matrix::IDENTITY) };
+        let mut history = L::History::ZERO;
+        for _ in 0..10 {
+            let increment = match axial {
+                true => {
+                    let stretches: [f64; 3] = std::array::from_fn(|_| (size * chance.signed()).exp());
+                    Matrix::from_fn(|i, j| if i == j { stretches[i] } else { 0.0 })
+                }
+                false => chance.deformation(size),
+            };
+            let deformation = increment * now.deformation;
+            let jacobian = deformation.det();
+            let motion = Motion { deformation, jacobian, increment, ..now };
+            let response = law.respond(&motion, &history);
+            (now, history) = (Motion { stress: response.stress, ..motion }, response.history);
+            let energies =
+                [law.strain_energy(&deformation, &now.stress, &history), law.dissipation(&history)];
+            let moduli = [
+                law.wave_modulus(&deformation, jacobian, &history),
+                law.shear_modulus(&deformation, jacobian, &history),
+            ];
+            let all = now.stress.0.iter().chain(history.entries()).chain(&energies).chain(&moduli);
+            assert!(all.clone().all(|x| x.is_finite()), "{path}: {motion:?} {:?}", all.collect::<Vec<_>>());
+            assert!(moduli[0] >= moduli[1] * (1.0 - 1e-12) && moduli[1] >= 0.0, "{path}: {moduli:?}");
+            assert!(energies[1] >= 0.0, "{path}: {energies:?}");
+        }
+    }
+}
+
+/// Over many states and waves: the largest stiffness d^2/de^2 W((I + e m n^T) F) over what the law says, for waves
+/// along n in which matter moves along any m, and for those in which it moves across n, over its shear modulus.
+pub fn stiffness_over_moduli<L: Law<f64>>(law: &L, (states, size): (usize, f64)) -> [f64; 2] {
+    let mut chance = Chance(11);
+    let none = L::History::ZERO;
+    let mut largest = [0.0f64; 2];
+    for _ in 0..states {
+        let f = chance.deformation(size);
+        let (waves, shear) = (law.wave_modulus(&f, f.det(), &none), law.shear_modulus(&f, f.det(), &none));
+        for _ in 0..60 {
+            let (n, m, h) = (chance.direction(), chance.direction(), 1e-3);
+            let dot: f64 = (0..3).map(|i| n[i] * m[i]).sum();
+            let across: [f64; 3] = std::array::from_fn(|i| m[i] - dot * n[i]);
+            let length = across.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let stiffness = |m: [f64; 3]| {
+                let energy = |e: f64| {
+                    let moved = Matrix::from_fn(|i, j| e * m[i] * n[j]) + Matrix::IDENTITY;
+                    law.strain_energy(&(moved * f), &Symmetric::ZERO, &none)
+                };
+                // The fourth-order difference.
+                let near = energy(h) + energy(-h);
+                let far = energy(2.0 * h) + energy(-2.0 * h);
+                (16.0 * near - far - 30.0 * energy(0.0)) / (12.0 * h * h)
+            };
+            for m in [m, n] {
+                largest[0] = largest[0].max(stiffness(m) / waves);
+            }
+            if length > 0.1 && shear > 0.0 {
+                largest[1] = largest[1].max(stiffness(across.map(|x| x / length)) / shear);
+            }
+        }
+    }
+    largest
+}
