@@ -11,6 +11,9 @@ pub mod number;
 // Vector<T, D>, Matrix<T>, Symmetric<T>
 pub mod tensor;
 
+// Principal values and axes of symmetric tensors.
+pub mod eigen;
+
 // Shapes: inside(x), bounds; filling them with particles.
 pub mod geometry;
 

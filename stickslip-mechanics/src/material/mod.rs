@@ -11,6 +11,7 @@ mod history;
 mod initial;
 mod outside;
 mod plane_stress;
+mod principal;
 
 pub use custom::{Custom, CustomLaw};
 pub use declaration::{
@@ -111,9 +112,12 @@ macro_rules! laws {
 laws! { $
     neo_hookean NeoHookean;
     hypoelastic Hypoelastic;
+    hencky Hencky;
     mooney_rivlin MooneyRivlin;
+    ogden Ogden;
     fluid Fluid;
     johnson_cook JohnsonCook;
+    armstrong_frederick ArmstrongFrederick;
     von_mises VonMises;
     viscoelastic Viscoelastic;
     damage Damage;

@@ -74,6 +74,73 @@ pub const CASES: &[Cases] = &[
     },
     Cases {
         scene: PLANE,
+        with: &[("materials.m", "{ density = 1, hencky = { bulk_modulus = 1e6, shear_modulus = 1e6 } }")],
+        keys: &[
+            ("materials.m.hencky", "{ bulk_modulus = 3e6, shear_modulus = 1e6 }"),
+            ("materials.m.hencky.bulk_modulus", "2e6"),
+            ("materials.m.hencky.shear_modulus", "2e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("materials.m", "{ density = 1, hencky = { young_modulus = 1e6, poisson_ratio = 0.3 } }")],
+        keys: &[("materials.m.hencky.young_modulus", "2e6"), ("materials.m.hencky.poisson_ratio", "0.2")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("materials.m", "{ density = 1, hencky = { p_wave_modulus = 1e6, poisson_ratio = 0.3 } }")],
+        keys: &[("materials.m.hencky.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("materials.m", "{ density = 1, ogden = { terms = [[1e5, 2]], bulk_modulus = 1e6 } }")],
+        keys: &[
+            ("materials.m.ogden", "{ terms = [[2e5, 2]], bulk_modulus = 1e6 }"),
+            ("materials.m.ogden.terms", "[[1e5, 3]]"),
+            ("materials.m.ogden.bulk_modulus", "2e6"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, armstrong_frederick = { bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 1e3, \
+             kinematic_modulus = 1e4 } }",
+        )],
+        keys: &[
+            (
+                "materials.m.armstrong_frederick",
+                "{ bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 2e3, kinematic_modulus = 1e4 }",
+            ),
+            ("materials.m.armstrong_frederick.bulk_modulus", "2e6"),
+            ("materials.m.armstrong_frederick.shear_modulus", "2e6"),
+            ("materials.m.armstrong_frederick.yield_stress", "2e3"),
+            ("materials.m.armstrong_frederick.kinematic_modulus", "2e4"),
+            ("materials.m.armstrong_frederick.dynamic_recovery", "10"),
+            ("materials.m.armstrong_frederick.hardening_modulus", "1e3"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, armstrong_frederick = { young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3, kinematic_modulus = 1e4 } }",
+        )],
+        keys: &[
+            ("materials.m.armstrong_frederick.young_modulus", "2e6"),
+            ("materials.m.armstrong_frederick.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, armstrong_frederick = { p_wave_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3, kinematic_modulus = 1e4 } }",
+        )],
+        keys: &[("materials.m.armstrong_frederick.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
         with: &[("materials.m", "{ density = 1, mooney_rivlin = { c10 = 1e5, bulk_modulus = 1e6 } }")],
         keys: &[
             ("materials.m.mooney_rivlin", "{ c10 = 2e5, bulk_modulus = 1e6 }"),

@@ -3,8 +3,19 @@
 /// What stands here for a law of another program, by its names there, without case, `_`, `-` and spaces.
 const ELSEWHERE: &[(&[&str], &str)] = &[
     (
-        &["elastic", "isotropic", "linear", "linearelastic", "elas", "hooke", "saintvenantkirchhoff", "stvk"],
-        "here: `hypoelastic`, Hooke's law that turns with the material, for small strains; `neo_hookean` for large ones",
+        &[
+            "elastic",
+            "isotropic",
+            "linear",
+            "linearelastic",
+            "elas",
+            "hooke",
+            "saintvenantkirchhoff",
+            "stvk",
+            "logarithmic",
+        ],
+        "here: `hypoelastic`, Hooke's law that turns with the material, for small strains; `hencky`, in logarithmic strain, \
+         for moderate and `neo_hookean` for large ones",
     ),
     (
         &["neohooke", "neoh", "compneohook", "hyperelastic", "corotated", "fixedcorotated", "jelly"],
@@ -12,8 +23,13 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     ),
     (
         &["mooney", "yeoh", "arrudaboyce", "gent"],
-        "here: `mooney_rivlin`, with c10, c01 and bulk_modulus; what it lacks at large strains is a law of your own in \
-         Python, chapter 15",
+        "here: `mooney_rivlin`, with c10, c01 and bulk_modulus, or `ogden`, with pairs of modulus and exponent; another \
+         one is a law of your own in Python, chapter 15",
+    ),
+    (
+        &["chaboche", "lemaitrechaboche", "kinematichardening", "kinematic", "combinedhardening", "prager"],
+        "here: `armstrong_frederick`, with yield_stress, kinematic_modulus, dynamic_recovery and, for a yield stress that \
+         grows too, hardening_modulus",
     ),
     (
         &[
