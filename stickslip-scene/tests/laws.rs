@@ -61,6 +61,8 @@ fn a_law_is_its_own_file_and_a_line_on_the_list() {
         ("viscoelastic", "viscous_strain_1"),
         ("viscoelastic", "viscous_dissipation"),
         ("johnson_cook", "temperature_rise"),
+        ("johnson_cook", "ductile_damage"),
+        ("armstrong_frederick", "back_stress"),
         ("damage", "damage_strain"),
         ("damage", "damage_dissipation"),
     ] {

@@ -394,6 +394,7 @@ mod tests {
     #[test]
     fn whatever_the_motion_the_answers_are_numbers() {
         answers_are_numbers(&LAW, 20_000);
+        answers_are_numbers(&LAW.map(|x| x as f32), 20_000);
         answers_are_numbers(&ArmstrongFrederick { dynamic_recovery: 0.0, ..LAW }, 20_000);
     }
 

@@ -571,6 +571,8 @@ mod tests {
             20_000,
         );
         answers_are_numbers(&law(&[(YIELD_STRESS, 2.0)]), 20_000);
+        let thins = law(&[(VISCOSITY_KEY, 0.1), (YIELD_STRESS, 2.0), (FLOW_EXPONENT, 0.3)]);
+        answers_are_numbers(&thins.map(|x| x as f32), 20_000);
     }
 
     /// At rest it bears pressure alone, but for what its yield stress holds.

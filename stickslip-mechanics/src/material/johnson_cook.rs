@@ -7,6 +7,14 @@
 //! T = min((T_room + x W_p/c - T_room)/(T_melt - T_room), 1)                c: heat capacity of a volume, rho c_p
 //! ```
 //!
+//! It may fail (Johnson and Cook 1985), where D comes to one:
+//!
+//! ```text
+//! dD = da/e_f,   e_f = (D_1 + D_2 exp(D_3 m/q)) (1 + D_4 ln max(r/r_0, 1)) (1 + D_5 T)       m = tr(sigma)/3
+//! ```
+//! Then it bears the pressure of its volume alone, m = min(K ln J, 0), so that a gap must close before it is pressed; what
+//! was stored in shear and tension is dissipated.
+//!
 //! The part x of the plastic work (Taylor and Quinney 1934) warms the material, and no heat is conducted: so it is where
 //! flow is faster than heat spreads. At T_melt nothing is left of the strength. Rates below r_0 harden nothing. The yield
 //! stress bounds the Kirchhoff stress, as in von Mises' law here. In a step the growth x of a solves
@@ -47,6 +55,24 @@ pub struct JohnsonCook<T> {
     /// What heat does; nothing where there is none.
     #[serde(flatten)]
     pub heat: Option<Softening<T>>,
+    /// How it fails; never where there is none.
+    #[serde(flatten)]
+    pub failure: Option<Failure<T>>,
+}
+
+/// Constants of the strain at failure [-].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Failure<T> {
+    /// D_1
+    pub d1: T,
+    /// D_2
+    pub d2: T,
+    /// D_3, negative for metals, which bear less strain in tension.
+    pub d3: T,
+    /// D_4
+    pub d4: T,
+    /// D_5
+    pub d5: T,
 }
 
 /// What the heat of plastic work does.
@@ -75,19 +101,21 @@ const MELTING_TEMPERATURE: &str = "melting_temperature";
 const ROOM_TEMPERATURE: &str = "room_temperature";
 const HEAT_CAPACITY: &str = "heat_capacity";
 const HEATED_SHARE: &str = "heated_share";
+const FAILURE: [&str; 5] = ["d1", "d2", "d3", "d4", "d5"];
 
-/// What a particle remembers: the last only where heat does something.
-const HISTORY: [History; 3] = [
+/// What a particle remembers: the last two only where heat or failure need them.
+const HISTORY: [History; 4] = [
     History::new("plastic_strain", "", Kind::Number),
     History::new("plastic_dissipation", "J/m^3", Kind::Number),
     History::new("temperature_rise", "K", Kind::Number),
+    History::new("ductile_damage", "", Kind::Number),
 ];
 
 /// T_room where none is given [K].
 const USUAL_ROOM: f64 = 293.15;
 /// x where none is given.
 const USUAL_SHARE: f64 = 0.9;
-/// Trials of a step at most; most take three to six.
+/// Trials of a step at most.
 const MOST_TRIALS: usize = 40;
 /// What no quotient divides by less than.
 const LEAST: f64 = 1e-30;
@@ -99,6 +127,11 @@ const ABOVE_TO_ONE: AllowedRange = AllowedRange {
     to: End::At(1.0),
     because: ", for above 1 hardening would grow without end",
 };
+/// The smallest strain at failure.
+const LEAST_STRAIN: f64 = 1e-6;
+/// The largest exponent in it.
+const MOST_EXPONENT: f64 = 60.0;
+const ANY: AllowedRange = AllowedRange { from: End::Free, to: End::Free, because: "" };
 const SHARES: AllowedRange = AllowedRange { from: End::At(0.0), to: End::At(1.0), because: "" };
 
 /// A constant of which the law says itself when it may be missing.
@@ -112,8 +145,8 @@ const fn judged(
 
 impl Declared for JohnsonCook<f64> {
     const SUMMARY: &'static str = "Plastic flow of metals at high rates, after Johnson and Cook: it hardens by strain and rate, and softens by \
-                                   its heat.";
-    const CONSTANTS: &'static [Constant] = &elastic::and::<10, 15>([
+                                   its heat, and may fail.";
+    const CONSTANTS: &'static [Constant] = &elastic::and::<15, 20>([
         Constant::required(
             YIELD_STRESS,
             "Yield stress in slow uniaxial tension before any flow, A.",
@@ -160,6 +193,15 @@ impl Declared for JohnsonCook<f64> {
             (ENERGY_PER_VOLUME, POSITIVE),
         ),
         judged(HEATED_SHARE, "Part of the plastic work that becomes heat; 0.9 without it.", (RATIO, SHARES)),
+        judged(FAILURE[0], "Strain at failure, D1; without it nothing fails.", (RATIO, ANY)),
+        judged(FAILURE[1], "Strain at failure by mean stress, D2; 0 without it.", (RATIO, NOT_NEGATIVE)),
+        judged(
+            FAILURE[2],
+            "Factor of mean stress over equivalent stress in its exponential, D3, negative for metals; 0 without it.",
+            (RATIO, ANY),
+        ),
+        judged(FAILURE[3], "Growth of the strain at failure by the rate, D4; 0 without it.", (RATIO, ANY)),
+        judged(FAILURE[4], "Growth of the strain at failure by temperature, D5; 0 without it.", (RATIO, ANY)),
     ]);
 
     fn build(given: &Given) -> Result<Self, BadConstants> {
@@ -175,6 +217,7 @@ impl Declared for JohnsonCook<f64> {
             rate_coefficient: given.number(RATE_COEFFICIENT),
             reference_rate: given.number(REFERENCE_RATE),
             heat: Softening::build(given)?,
+            failure: Failure::build(given)?,
         })
     }
 
@@ -187,6 +230,13 @@ impl Declared for JohnsonCook<f64> {
             .with(HARDENING_EXPONENT, self.hardening_exponent)
             .with(RATE_COEFFICIENT, self.rate_coefficient)
             .with(REFERENCE_RATE, self.reference_rate);
+        let given = match self.failure {
+            None => given,
+            Some(Failure { d1, d2, d3, d4, d5 }) => FAILURE
+                .into_iter()
+                .zip([d1, d2, d3, d4, d5])
+                .fold(given, |given, (key, value)| given.with(key, value)),
+        };
         match self.heat {
             None => given,
             Some(heat) => given
@@ -200,6 +250,28 @@ impl Declared for JohnsonCook<f64> {
 
     fn elastic(&self) -> Isotropic<f64> {
         self.elastic.elastic
+    }
+}
+
+impl Failure<f64> {
+    /// D_1 with whatever else is given, or nothing.
+    fn build(given: &Given) -> Result<Option<Self>, BadConstants> {
+        let Some(d1) = given.get(FAILURE[0]) else {
+            let lonely = FAILURE.into_iter().find_map(|key| Some((key, given.get(key)?)));
+            return lonely.map_or(Ok(None), |(key, value)| {
+                Err(BadConstants::of(key, format!("{value}, but no d1"), "d1 with it, or none of them"))
+            });
+        };
+        let [d2, d3, d4, d5] = [1, 2, 3, 4].map(|i| given.get(FAILURE[i]).unwrap_or(0.0));
+        if d1 + d2 <= 0.0 {
+            let found = format!("{d1} with d2 = {d2}");
+            return Err(BadConstants::of(
+                FAILURE[0],
+                found,
+                "d1 + d2 above 0, the strain at failure in shear",
+            ));
+        }
+        Ok(Some(Failure { d1, d2, d3, d4, d5 }))
     }
 }
 
@@ -255,8 +327,21 @@ impl<T: Copy> JohnsonCook<T> {
                 heat_capacity: f(heat.heat_capacity),
                 heated_share: f(heat.heated_share),
             }),
+            failure: self.failure.map(|failure| Failure {
+                d1: f(failure.d1),
+                d2: f(failure.d2),
+                d3: f(failure.d3),
+                d4: f(failure.d4),
+                d5: f(failure.d5),
+            }),
         }
     }
+}
+
+/// q of a deviator [Pa]
+#[inline(always)]
+fn equivalent<T: Number>(deviator: &Symmetric<T>) -> T {
+    (T::of(1.5) * deviator.double_dot(deviator)).sqrt()
 }
 
 /// x^exponent of x >= 0; below [`SMALLEST`] a straight line, so that its slope has an end.
@@ -273,11 +358,27 @@ impl<T: Number> Softening<T> {
         self.heated_share * work / self.heat_capacity
     }
 
+    /// T
+    #[inline(always)]
+    fn homologous(&self, work: T) -> T {
+        (self.rise(work) / (self.melting_temperature - self.room_temperature)).min(T::ONE)
+    }
+
     /// 1 - T^m
     #[inline(always)]
     fn left(&self, work: T) -> T {
-        let span = self.melting_temperature - self.room_temperature;
-        T::ONE - power((self.rise(work) / span).min(T::ONE), self.thermal_exponent)
+        T::ONE - power(self.homologous(work), self.thermal_exponent)
+    }
+}
+
+impl<T: Number> Failure<T> {
+    /// e_f of m/q, max(r/r_0, 1) and T.
+    #[inline(always)]
+    fn strain(&self, [triaxiality, rate, homologous]: [T; 3]) -> T {
+        let exponent = (self.d3 * triaxiality).min(T::of(MOST_EXPONENT));
+        let by_stress = self.d1 + self.d2 * exponent.exp();
+        let by_rate = T::ONE + self.d4 * rate.ln();
+        (by_stress * by_rate * (T::ONE + self.d5 * homologous)).max(T::of(LEAST_STRAIN))
     }
 }
 
@@ -296,6 +397,15 @@ struct Before<T> {
     slow_strain: T,
 }
 
+impl<T: Number> Before<T> {
+    /// r/r_0 if a grows by so much; a step without duration has none.
+    #[inline(always)]
+    fn rate(&self, growth: T) -> T {
+        let slow = self.slow_strain.max(T::of(LEAST));
+        T::select(T::ZERO.at_least(self.slow_strain), T::ZERO, growth / slow)
+    }
+}
+
 impl<T: Number> JohnsonCook<T> {
     /// Y, and its slope, after a step in which a grows by so much.
     #[inline(always)]
@@ -303,9 +413,7 @@ impl<T: Number> JohnsonCook<T> {
         let strain = before.plastic_strain + growth;
         let hardened = self.hardening_modulus * power(strain, self.hardening_exponent);
         let base = self.yield_stress + hardened;
-        // A step without duration has no rate.
-        let slow = before.slow_strain.max(T::of(LEAST));
-        let timed = T::select(T::ZERO.at_least(before.slow_strain), T::ZERO, growth / slow);
+        let timed = before.rate(growth);
         let rate = T::ONE + self.rate_coefficient * timed.max(T::ONE).ln();
         let positive = growth.max(T::of(LEAST));
         let by_rate = T::select(timed.at_least(T::ONE), self.rate_coefficient / positive, T::ZERO);
@@ -361,11 +469,15 @@ impl<T: Number> JohnsonCook<T> {
 }
 
 impl<T: Number> Law<T> for JohnsonCook<T> {
-    type History = [T; 3];
+    type History = [T; 4];
 
     #[inline(always)]
     fn history(&self) -> &'static [History] {
-        if self.heat.is_some() { &HISTORY } else { &HISTORY[..2] }
+        match (&self.heat, &self.failure) {
+            (_, Some(_)) => &HISTORY,
+            (Some(_), None) => &HISTORY[..3],
+            (None, None) => &HISTORY[..2],
+        }
     }
 
     /// Plastic flow resists no error of F.
@@ -375,43 +487,65 @@ impl<T: Number> Law<T> for JohnsonCook<T> {
     }
 
     #[inline(always)]
-    fn respond(&self, motion: &Motion<T>, &[plastic_strain, work, _]: &[T; 3]) -> Response<T, [T; 3]> {
-        let three_g = T::of(3.0) * self.elastic.elastic.shear_modulus;
+    fn respond(&self, motion: &Motion<T>, history: &[T; 4]) -> Response<T, [T; 4]> {
+        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic.elastic;
+        let &[plastic_strain, work, _, damage] = history;
+        let (three_g, j) = (T::of(3.0) * g, motion.jacobian);
+        let failed = match self.failure {
+            Some(_) => damage.at_least(T::ONE),
+            None => 0,
+        };
         let trial = self.elastic.stress(motion);
         let deviator = trial.deviator();
-        let q = (T::of(1.5) * deviator.double_dot(&deviator)).sqrt();
+        let cool = self.heat.map_or(T::ONE, |heat| heat.left(work));
         let before = Before {
             plastic_strain,
-            cool: self.heat.map_or(T::ONE, |heat| heat.left(work)),
-            trial: motion.jacobian * q,
-            stiffness: three_g * motion.jacobian,
+            cool: T::select(failed, T::ZERO, cool),
+            trial: j * equivalent(&deviator),
+            stiffness: three_g * j,
             slow_strain: motion.dt * self.reference_rate,
         };
         let [growth, strength] = self.growth(&before);
         // Without flow nothing is divided: a stress without deviator stays as it is.
-        let share = (three_g * growth / q.max(T::EPSILON * self.yield_stress)).min(T::ONE);
-        let work = work + strength * growth;
-        let rise = self.heat.map_or(T::ZERO, |heat| heat.rise(work));
-        Response { stress: trial - deviator * share, history: [plastic_strain + growth, work, rise] }
+        let q = (before.trial / j).max(T::EPSILON * self.yield_stress);
+        let share = (three_g * growth / q).min(T::ONE);
+        let mut lost = work + strength * growth;
+        let (mut stress, mut torn) = (trial - deviator * share, damage);
+        if let Some(failure) = self.failure {
+            // What fails now lets go of what the step before left.
+            let mean = stress.trace() * T::of(1.0 / 3.0);
+            let left = motion.stress.trace().max(T::ZERO) * T::of(1.0 / 3.0);
+            let in_shear = T::HALF * equivalent(&motion.stress.deviator()) * growth;
+            let let_go = j * (in_shear + T::HALF * left * left / k);
+            let pressed = (k * j.ln()).min(T::ZERO);
+            lost += T::select(failed, let_go, T::ZERO);
+            stress += Symmetric::isotropic(T::select(failed, pressed - mean, T::ZERO));
+            let homologous = self.heat.map_or(T::ZERO, |heat| heat.homologous(work));
+            let triaxiality = mean / (strength / j).max(T::EPSILON * self.yield_stress);
+            let at = [triaxiality, before.rate(growth).max(T::ONE), homologous];
+            torn = T::select(failed, T::ONE, (damage + growth / failure.strain(at)).min(T::ONE));
+        }
+        let rise = self.heat.map_or(T::ZERO, |heat| heat.rise(lost));
+        Response { stress, history: [plastic_strain + growth, lost, rise, torn] }
     }
 
     #[inline(always)]
-    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>, _history: &[T; 3]) -> T {
+    fn strain_energy(&self, deformation: &Matrix<T>, stress: &Symmetric<T>, _history: &[T; 4]) -> T {
         self.elastic.strain_energy(deformation, stress, &[])
     }
 
     #[inline(always)]
-    fn dissipation(&self, &[_, work, _]: &[T; 3]) -> T {
+    fn dissipation(&self, &[_, work, ..]: &[T; 4]) -> T {
         work
     }
 
     #[inline(always)]
-    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 3]) -> T {
+    fn wave_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 4]) -> T {
         self.elastic.wave_modulus(deformation, jacobian, &[])
     }
 
     #[inline(always)]
-    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 3]) -> T {
+    fn shear_modulus(&self, deformation: &Matrix<T>, jacobian: T, _history: &[T; 4]) -> T {
         self.elastic.shear_modulus(deformation, jacobian, &[])
     }
 }
@@ -438,12 +572,17 @@ mod tests {
             heat_capacity: 8.96e-3 * 383.0,
             heated_share: 0.9,
         }),
+        failure: None,
     };
-    const NONE: [f64; 3] = [0.0; 3];
+    /// From Johnson and Cook (1985).
+    const FAILS: JohnsonCook<f64> = JohnsonCook {
+        failure: Some(Failure { d1: 0.54, d2: 4.89, d3: -3.03, d4: 0.014, d5: 1.12 }),
+        ..COPPER
+    };
+    const NONE: [f64; 4] = [0.0; 4];
 
     fn equivalent(stress: &Symmetric<f64>) -> f64 {
-        let s = stress.deviator();
-        (1.5 * s.double_dot(&s)).sqrt()
+        super::equivalent(&stress.deviator())
     }
 
     /// A bar that keeps its volume, by its logarithmic strain.
@@ -544,7 +683,7 @@ mod tests {
                 stress: Symmetric([0.0; 6]),
                 dt: motion.dt as f32,
             };
-            let found = single.respond(&narrow, &[0.0; 3]);
+            let found = single.respond(&narrow, &[0.0; 4]);
             let size = equivalent(&exact.stress);
             for (s, e) in found.stress.deviator().0.iter().zip(exact.stress.deviator().0) {
                 assert!((f64::from(*s) - e).abs() < 2e-3 * size, "{s} {e}");
@@ -559,6 +698,54 @@ mod tests {
         let (end, history, _) = follow(&JohnsonCook { heat, ..COPPER }, (400, 1.0), |t| bar(0.5 * t) * 0.99);
         assert!((history[2] / (1356.0 - 294.0) - 1.0).abs() < 1e-5, "{history:?}");
         assert!(equivalent(&end.stress) < 1e-3 * 90.0 && end.stress.trace() < -1e3, "{:?}", end.stress);
+    }
+
+    /// Slowly and without mean stress at D_1 + D_2, earlier under a mean stress as large as q.
+    /// Then it bears no shear and no tension, and pressure where its volume is below that of the start.
+    #[test]
+    fn it_fails_at_the_strain_of_the_formula() {
+        let failure = Failure { d1: 0.1, d2: 0.2, d3: -1.5, d4: 0.0, d5: 0.0 };
+        let law = JohnsonCook { heat: None, failure: Some(failure), ..COPPER };
+        let (end, history, _) = follow(&law, (3000, 1e6), |t| bar(0.29 * t));
+        assert!(history[3] > 0.95 && history[3] < 1.0 && equivalent(&end.stress) > 90.0, "{history:?}");
+        let exact = history[0] / 0.3;
+        assert!((history[3] / exact - 1.0).abs() < 1e-3, "{history:?}");
+        let (end, broken, _) = follow(&law, (3000, 1e6), |t| bar(0.31 * t));
+        assert!(broken[3] == 1.0 && equivalent(&end.stress) < 1e-9, "{broken:?}");
+        // m/q of one: stretched in volume by q/K.
+        let strained = |t: f64| {
+            let a = 0.12 * t;
+            let q = 90.0 + 292.0 * a.powf(0.31);
+            bar(a) * (q / 129e3 / 3.0).exp()
+        };
+        let (_, history, _) = follow(&law, (3000, 1e6), strained);
+        let exact = history[0] / (0.1 + 0.2 * f64::exp(-1.5));
+        assert!((history[3] / exact - 1.0).abs() < 0.02, "{history:?} {exact}");
+        for j in [0.99, 1.0, 1.2] {
+            let motion = motion_of(Matrix::IDENTITY * f64::cbrt(j));
+            let after = law.respond(&Motion { stress: end.stress, ..motion }, &broken);
+            let exact = (129e3 * j.ln()).min(0.0);
+            assert!((after.stress.trace() / 3.0 - exact).abs() < 1e-9, "{j}: {:?}", after.stress);
+            assert!(after.history.iter().zip(broken).all(|(a, b)| (a - b).abs() < 1e-12));
+        }
+    }
+
+    /// Also through the failure, which lets go of shear and tension.
+    #[test]
+    fn what_failure_lets_go_of_is_dissipated() {
+        let failure = Failure { d1: 0.002, d2: 0.0, d3: 0.0, d4: 0.0, d5: 0.0 };
+        let law = JohnsonCook { failure: Some(failure), ..COPPER };
+        for h in sample_gradients() {
+            let motion = |t: f64| {
+                let f = Matrix::IDENTITY + h * (0.1 * t);
+                f * ((1.0 + 3e-3 * t) / f.det().cbrt())
+            };
+            let (end, history, work) = follow(&law, (8000, 1.0), motion);
+            let stored = law.strain_energy(&end.deformation, &end.stress, &history);
+            assert!(history[3] == 1.0 && stored < 1e-9 * work, "{history:?}");
+            let dissipated = law.dissipation(&history);
+            assert!(((stored + dissipated) / work - 1.0).abs() < 5e-3, "{stored} + {dissipated}, {work}");
+        }
     }
 
     #[test]
@@ -597,6 +784,18 @@ mod tests {
     #[test]
     fn whatever_the_motion_the_answers_are_numbers() {
         answers_are_numbers(&COPPER, 20_000);
+        answers_are_numbers(&FAILS, 20_000);
+        // In Pa and s.
+        let si = JohnsonCook {
+            elastic: Hypoelastic { elastic: Isotropic { bulk_modulus: 129e9, shear_modulus: 46e9 } },
+            yield_stress: 90e6,
+            hardening_modulus: 292e6,
+            reference_rate: 1.0,
+            heat: COPPER.heat.map(|heat| Softening { heat_capacity: 3.43e6, ..heat }),
+            ..FAILS
+        };
+        answers_are_numbers(&si, 20_000);
+        answers_are_numbers(&si.map(|x| x as f32), 20_000);
         answers_are_numbers(&JohnsonCook { hardening_modulus: 0.0, heat: None, ..COPPER }, 20_000);
     }
 
@@ -638,6 +837,7 @@ mod tests {
         let heat = [(THERMAL_EXPONENT, 1.0), (MELTING_TEMPERATURE, 1000.0), (HEAT_CAPACITY, 1.0)];
         assert_eq!(with(&heat).expect("all of heat").history().len(), 3);
         assert_eq!(with(&[]).expect("no heat").history().len(), 2);
+        assert_eq!(with(&[("d1", 0.5)]).expect("failure").history().len(), 4);
         for (constants, key) in [
             (&[(YIELD_STRESS, 0.0)][..], Some(YIELD_STRESS)),
             (&[(HARDENING_MODULUS, -1.0)], Some(HARDENING_MODULUS)),
@@ -649,6 +849,9 @@ mod tests {
             (&[(HEATED_SHARE, 0.5)], Some(HEATED_SHARE)),
             (&[heat[0], (MELTING_TEMPERATURE, 200.0), heat[2]], Some(MELTING_TEMPERATURE)),
             (&[(HEATED_SHARE, 1.5)], Some(HEATED_SHARE)),
+            (&[("d3", -1.0)], Some("d3")),
+            (&[("d1", -0.1), ("d2", 0.05)], Some("d1")),
+            (&[("d1", 0.1), ("d2", -0.05)], Some("d2")),
             (&[("shear_modulus", 0.0)], None),
         ] {
             assert_eq!(with(constants).unwrap_err().key.as_deref(), key, "{constants:?}");

@@ -315,6 +315,7 @@ mod tests {
     #[test]
     fn whatever_the_motion_the_answers_are_numbers() {
         answers_are_numbers(&law(), 20_000);
+        answers_are_numbers(&law().map(|x| x as f32), 20_000);
     }
 
     #[test]

@@ -1,8 +1,7 @@
 //! Trials that tests put laws to: many motions, and waves in every direction.
 
-use super::tests::motion_of;
 use super::{Entries, Law, Motion};
-use crate::tensor::{Matrix, Symmetric};
+use crate::tensor::{Matrix, Real, Symmetric};
 
 /// Numbers that look like chance and are the same in every run (Knuth's linear congruential generator).
 pub struct Chance(pub u64);
@@ -45,14 +44,16 @@ impl Chance {
 }
 
 /// Paths of ten steps from rest: tiny strains, large ones, none, and steps of no duration.
-/// Whatever a law answers is a number.
-pub fn answers_are_numbers<L: Law<f64>>(law: &L, paths: usize) {
+/// Whatever a law answers is a number. In single precision the largest strains are left out, whose powers have none.
+pub fn answers_are_numbers<T: Real, L: Law<T>>(law: &L, paths: usize) {
     let mut chance = Chance(7);
+    let narrow = |matrix: &Matrix<f64>| Matrix::from_fn(|i, j| T::of(matrix.0[i][j]));
+    let sizes = &[0.0, 1e-12, 1e-6, 1e-3, 0.05, 0.3, 1.0][..if T::EPSILON.f64() < 1e-10 { 7 } else { 6 }];
     for path in 0..paths {
-        let size = [0.0, 1e-12, 1e-6, 1e-3, 0.05, 0.3, 1.0][path % 7];
-        let dt = [0.0, 1e-12, 1e-6, 1e-3, 1.0][path / 7 % 5];
+        let size = sizes[path % sizes.len()];
+        let dt = T::of([0.0, 1e-12, 1e-6, 1e-3, 1.0][path / sizes.len() % 5]);
         let axial = path % 3 == 0;
-        let mut now = Motion { dt, ..motion_of(Matrix::IDENTITY) };
+        let (mut deformation, mut stress) = (Matrix::IDENTITY, Symmetric::ZERO);
         let mut history = L::History::ZERO;
         for _ in 0..10 {
             let increment = match axial {
@@ -62,21 +63,19 @@ pub fn answers_are_numbers<L: Law<f64>>(law: &L, paths: usize) {
                 }
                 false => chance.deformation(size),
             };
-            let deformation = increment * now.deformation;
-            let jacobian = deformation.det();
-            let motion = Motion { deformation, jacobian, increment, ..now };
+            deformation = increment * deformation;
+            let (f, jacobian) = (narrow(&deformation), T::of(deformation.det()));
+            let motion = Motion { deformation: f, jacobian, increment: narrow(&increment), stress, dt };
             let response = law.respond(&motion, &history);
-            (now, history) = (Motion { stress: response.stress, ..motion }, response.history);
-            let energies =
-                [law.strain_energy(&deformation, &now.stress, &history), law.dissipation(&history)];
-            let moduli = [
-                law.wave_modulus(&deformation, jacobian, &history),
-                law.shear_modulus(&deformation, jacobian, &history),
-            ];
-            let all = now.stress.0.iter().chain(history.entries()).chain(&energies).chain(&moduli);
+            (stress, history) = (response.stress, response.history);
+            let energies = [law.strain_energy(&f, &stress, &history), law.dissipation(&history)];
+            let moduli =
+                [law.wave_modulus(&f, jacobian, &history), law.shear_modulus(&f, jacobian, &history)];
+            let all = stress.0.iter().chain(history.entries()).chain(&energies).chain(&moduli);
             assert!(all.clone().all(|x| x.is_finite()), "{path}: {motion:?} {:?}", all.collect::<Vec<_>>());
-            assert!(moduli[0] >= moduli[1] * (1.0 - 1e-12) && moduli[1] >= 0.0, "{path}: {moduli:?}");
-            assert!(energies[1] >= 0.0, "{path}: {energies:?}");
+            let [waves, shear, lost] = [moduli[0], moduli[1], energies[1]].map(Real::f64);
+            assert!(waves >= shear * (1.0 - 1e-5) && shear >= 0.0, "{path}: {moduli:?}");
+            assert!(lost >= 0.0, "{path}: {lost}");
         }
     }
 }

@@ -190,6 +190,20 @@ pub const CASES: &[Cases] = &[
         scene: PLANE,
         with: &[(
             "materials.m",
+            "{ density = 1, johnson_cook = { bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 1e3, d1 = 0.1 } }",
+        )],
+        keys: &[
+            ("materials.m.johnson_cook.d1", "0.2"),
+            ("materials.m.johnson_cook.d2", "0.2"),
+            ("materials.m.johnson_cook.d3", "-1.5"),
+            ("materials.m.johnson_cook.d4", "0.1"),
+            ("materials.m.johnson_cook.d5", "1"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
             "{ density = 1, johnson_cook = { young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 } }",
         )],
         keys: &[
