@@ -240,7 +240,9 @@ impl<T: Number> Law<T> for ArmstrongFrederick<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, motion_of, rotation, sample_gradients};
-    use crate::material::trials::{Chance, answers_are_numbers};
+    use crate::material::trials::{
+        Chance, answers_are_numbers, lanes_know_nothing_of_each_other, plates_have_a_thickness,
+    };
     use crate::material::{LAWS, VonMises};
 
     const LAW: ArmstrongFrederick<f64> = ArmstrongFrederick {
@@ -389,6 +391,16 @@ mod tests {
         assert!(turned(&after.stress, &before.stress));
         assert!(turned(&symmetric(&after.history, BACK_STRESS), &symmetric(&history, BACK_STRESS)));
         assert!((after.history[0] - history[0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn particles_side_by_side_know_nothing_of_each_other() {
+        lanes_know_nothing_of_each_other(&LAW, &LAW.map(Number::of), 2000);
+    }
+
+    #[test]
+    fn plates_have_a_thickness_without_stress() {
+        plates_have_a_thickness(&LAW, 400);
     }
 
     #[test]

@@ -363,8 +363,8 @@ impl<T: Number> Law<T> for Fluid<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, motion_of, rotation, sample_gradients};
-    use crate::material::trials::{Chance, answers_are_numbers};
-    use crate::material::{LAWS, Material};
+    use crate::material::trials::{Chance, answers_are_numbers, lanes_know_nothing_of_each_other};
+    use crate::material::{LAWS, Material, Thickness};
 
     const K: f64 = 2e3;
 
@@ -562,6 +562,14 @@ mod tests {
     }
 
     #[test]
+    fn particles_side_by_side_know_nothing_of_each_other() {
+        let thins =
+            law(&[(VISCOSITY_KEY, 0.1), (YIELD_STRESS, 2.0), (FLOW_EXPONENT, 0.3), (TENSILE_STRENGTH, 1.0)]);
+        lanes_know_nothing_of_each_other(&law(&[]), &law(&[]).map(Number::of), 2000);
+        lanes_know_nothing_of_each_other(&thins, &thins.map(Number::of), 2000);
+    }
+
+    #[test]
     fn whatever_the_motion_the_answers_are_numbers() {
         answers_are_numbers(&law(&[]), 20_000);
         let muds = [(VISCOSITY_KEY, 0.1), (YIELD_STRESS, 2.0), (TENSILE_STRENGTH, 0.0)];
@@ -590,6 +598,8 @@ mod tests {
             assert!((law.pressure(stretch.det()) / (0.01 * K) - 1.0).abs() < 1e-9);
             assert_eq!(material.stretch_under(&sheared).is_ok(), bears, "{law:?}");
             assert!(!material.carries_stress());
+            // So that a scene in plane stress is refused.
+            assert_eq!(material.wave_modulus_at_rest(Thickness::Free), 0.0);
         }
     }
 

@@ -122,7 +122,9 @@ mod tests {
     use super::*;
     use crate::material::LAWS;
     use crate::material::tests::{follow, hooke, motion_of, rotation, sample_gradients};
-    use crate::material::trials::{answers_are_numbers, stiffness_over_moduli};
+    use crate::material::trials::{
+        answers_are_numbers, lanes_know_nothing_of_each_other, plates_have_a_thickness, stiffness_over_moduli,
+    };
 
     const LAW: Hencky<f64> = Hencky { elastic: Isotropic { bulk_modulus: 6.0, shear_modulus: 3.0 } };
 
@@ -194,6 +196,16 @@ mod tests {
         }
         let [waves, shear] = LAW.moduli(&Matrix::IDENTITY);
         assert!((waves / 10.0 - 1.0).abs() < 1e-12 && (shear / 3.0 - 1.0).abs() < 1e-12, "{waves} {shear}");
+    }
+
+    #[test]
+    fn particles_side_by_side_know_nothing_of_each_other() {
+        lanes_know_nothing_of_each_other(&LAW, &LAW.map(Number::of), 2000);
+    }
+
+    #[test]
+    fn plates_have_a_thickness_without_stress() {
+        plates_have_a_thickness(&LAW, 400);
     }
 
     #[test]

@@ -173,6 +173,9 @@ mod tests {
         for &(name, value) in more {
             given = given.with(name, value);
         }
+        if name == "ogden" {
+            given.put("terms", vec![2.0, 2.0, -1.0, -2.0]);
+        }
         if name == "viscoelastic" {
             given.put("prony", vec![0.5, 0.1]);
         }
@@ -180,7 +183,15 @@ mod tests {
     }
 
     fn laws() -> Vec<Material<f64>> {
+        let flows = [("yield_stress", 3.0), ("hardening_modulus", 0.0)];
+        let by_rate = [("hardening_exponent", 1.0), ("rate_coefficient", 0.1), ("reference_rate", 1.0)];
+        let moves = [("kinematic_modulus", 1.0), ("dynamic_recovery", 1.0)];
         vec![
+            law("hencky", &[]),
+            law("mooney_rivlin", &[("c10", 1.0), ("c01", 0.5)]),
+            law("ogden", &[]),
+            law("johnson_cook", &[&flows[..], &by_rate].concat()),
+            law("armstrong_frederick", &[&flows[..], &moves].concat()),
             law("neo_hookean", &[]),
             law("hypoelastic", &[]),
             law("von_mises", &[("yield_stress", 3.0), ("hardening_modulus", 0.0)]),
@@ -216,14 +227,14 @@ mod tests {
         }
         assert_eq!(
             laws().iter().map(Material::carries_stress).collect::<Vec<_>>(),
-            [false, true, true, false, false, false]
+            [false, false, false, true, true, false, true, true, false, false, false]
         );
     }
 
     #[test]
     fn what_cannot_be_is_refused() {
         let far = Symmetric([0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
-        let [.., flows, _, breaks, _] = &laws()[..] else { panic!("six laws") };
+        let [.., flows, _, breaks, _] = &laws()[..] else { panic!("laws") };
         assert_eq!(flows.stretch_under(&far), Err(NoStretch::Yields));
         assert!(breaks.stretch_under(&Symmetric([4.0, 0.0, 0.0, 0.0, 0.0, 0.0])).is_err());
         let water = |name: &str| {

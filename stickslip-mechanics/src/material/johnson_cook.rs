@@ -554,7 +554,9 @@ impl<T: Number> Law<T> for JohnsonCook<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, motion_of, rotation, sample_gradients};
-    use crate::material::trials::{Chance, answers_are_numbers};
+    use crate::material::trials::{
+        Chance, answers_are_numbers, lanes_know_nothing_of_each_other, plates_have_a_thickness,
+    };
     use crate::material::{LAWS, VonMises};
 
     /// Copper, in MPa, mm and ms but for the rate, from Johnson and Cook (1983).
@@ -779,6 +781,24 @@ mod tests {
         let after = slow.respond(&motion, &history);
         assert!(after.stress.0.iter().zip(before.stress.rotated(&q).0).all(|(s, e)| (s - e).abs() < 1e-9));
         assert!((after.history[0] - history[0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn particles_side_by_side_know_nothing_of_each_other() {
+        lanes_know_nothing_of_each_other(&COPPER, &COPPER.map(Number::of), 2000);
+        lanes_know_nothing_of_each_other(&FAILS, &FAILS.map(Number::of), 2000);
+    }
+
+    #[test]
+    fn plates_have_a_thickness_without_stress() {
+        plates_have_a_thickness(&COPPER, 400);
+        plates_have_a_thickness(
+            &JohnsonCook {
+                failure: Some(Failure { d1: 0.01, d2: 0.0, d3: 0.0, d4: 0.0, d5: 0.0 }),
+                ..COPPER
+            },
+            400,
+        );
     }
 
     #[test]

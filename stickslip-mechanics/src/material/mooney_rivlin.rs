@@ -152,7 +152,9 @@ impl<T: Number> Law<T> for MooneyRivlin<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, hooke, motion_of, rotation, sample_gradients};
-    use crate::material::trials::{answers_are_numbers, stiffness_over_moduli};
+    use crate::material::trials::{
+        answers_are_numbers, lanes_know_nothing_of_each_other, plates_have_a_thickness, stiffness_over_moduli,
+    };
     use crate::material::{LAWS, NeoHookean};
 
     const LAW: MooneyRivlin<f64> = MooneyRivlin { c10: 1.1, c01: 0.4, bulk_modulus: 6.0 };
@@ -226,6 +228,16 @@ mod tests {
         }
         let rest = LAW.wave_modulus(&Matrix::IDENTITY, 1.0, &[]);
         assert!((rest / LAW.elastic().p_wave_modulus() - 1.0).abs() < 1e-7, "{rest}");
+    }
+
+    #[test]
+    fn particles_side_by_side_know_nothing_of_each_other() {
+        lanes_know_nothing_of_each_other(&LAW, &LAW.map(Number::of), 2000);
+    }
+
+    #[test]
+    fn plates_have_a_thickness_without_stress() {
+        plates_have_a_thickness(&LAW, 400);
     }
 
     #[test]

@@ -219,7 +219,9 @@ impl<T: Number> Law<T> for Ogden<T> {
 mod tests {
     use super::*;
     use crate::material::tests::{follow, hooke, motion_of, rotation, sample_gradients};
-    use crate::material::trials::{answers_are_numbers, stiffness_over_moduli};
+    use crate::material::trials::{
+        answers_are_numbers, lanes_know_nothing_of_each_other, plates_have_a_thickness, stiffness_over_moduli,
+    };
     use crate::material::{LAWS, MooneyRivlin, NeoHookean};
 
     /// Treloar's rubber, in MPa, from Ogden (1972).
@@ -310,6 +312,16 @@ mod tests {
         let elastic = law().elastic();
         assert!((waves / elastic.p_wave_modulus() - 1.0).abs() < 1e-12, "{waves}");
         assert!((shear / elastic.shear_modulus - 1.0).abs() < 1e-12, "{shear}");
+    }
+
+    #[test]
+    fn particles_side_by_side_know_nothing_of_each_other() {
+        lanes_know_nothing_of_each_other(&law(), &law().map(Number::of), 2000);
+    }
+
+    #[test]
+    fn plates_have_a_thickness_without_stress() {
+        plates_have_a_thickness(&law(), 400);
     }
 
     #[test]

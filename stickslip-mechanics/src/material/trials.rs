@@ -1,7 +1,8 @@
 //! Trials that tests put laws to: many motions, and waves in every direction.
 
+use super::plane_stress::thickening;
 use super::{Entries, Law, Motion};
-use crate::tensor::{Matrix, Real, Symmetric};
+use crate::tensor::{Matrix, Number, Real, Symmetric};
 
 /// Numbers that look like chance and are the same in every run (Knuth's linear congruential generator).
 pub struct Chance(pub u64);
@@ -113,4 +114,148 @@ pub fn stiffness_over_moduli<L: Law<f64>>(law: &L, (states, size): (usize, f64))
         }
     }
     largest
+}
+
+/// A plate that is stretched and sheared in its plane in ten steps has a thickness without stress at each of them.
+pub fn plates_have_a_thickness<L: Law<f64>>(law: &L, paths: usize) {
+    let mut chance = Chance(17);
+    for path in 0..paths {
+        let size = [1e-6, 1e-3, 0.02, 0.1][path % 4];
+        let (mut f, mut stress, mut history) = (Matrix::IDENTITY, Symmetric::ZERO, L::History::ZERO);
+        for _ in 0..10 {
+            let [along, across] = [0, 1].map(|_| (size * chance.signed()).exp());
+            let (sine, cosine) = chance.signed().sin_cos();
+            let stretched = Matrix([[along, 0.0, 0.0], [0.0, across, 0.0], [0.0, 0.0, 1.0]]);
+            let turned = Matrix([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]);
+            let increment = turned * stretched;
+            let deformation = increment * f;
+            let jacobian = deformation.det();
+            let motion = Motion { deformation, jacobian, increment, stress, dt: 1e-3 };
+            let found = thickening(law, &motion, &history);
+            assert_eq!(found.found, 1, "{path}: {motion:?}");
+            let moved = motion.thickened(found.stretch);
+            let response = law.respond(&moved, &history);
+            let modulus = law.wave_modulus(&moved.deformation, moved.jacobian, &history);
+            assert!(response.stress.0[2].abs() < 1e-9 * modulus, "{path}: {:?}", response.stress);
+            (f, stress, history) = (moved.deformation, response.stress, response.history);
+        }
+    }
+}
+
+/// Two numbers side by side, as the engine has more of them in a register.
+#[derive(Clone, Copy, Debug)]
+pub struct Two([f64; 2]);
+
+macro_rules! by_lane {
+    ($($op:ident $f:ident $assign:ident $g:ident;)*) => {$(
+        impl std::ops::$op for Two {
+            type Output = Two;
+            fn $f(self, other: Two) -> Two {
+                Two([self.0[0].$f(other.0[0]), self.0[1].$f(other.0[1])])
+            }
+        }
+        impl std::ops::$assign for Two {
+            fn $g(&mut self, other: Two) {
+                *self = std::ops::$op::$f(*self, other);
+            }
+        }
+    )*};
+}
+by_lane! {
+    Add add AddAssign add_assign;
+    Sub sub SubAssign sub_assign;
+    Mul mul MulAssign mul_assign;
+    Div div DivAssign div_assign;
+}
+
+impl std::ops::Neg for Two {
+    type Output = Two;
+    fn neg(self) -> Two {
+        Two(self.0.map(|x| -x))
+    }
+}
+
+impl Number for Two {
+    const ZERO: Self = Two([0.0; 2]);
+    const NOTHING: Self = Two([-0.0; 2]);
+    const ONE: Self = Two([1.0; 2]);
+    const HALF: Self = Two([0.5; 2]);
+    const EPSILON: Self = Two([f64::EPSILON; 2]);
+    const SIDE_BY_SIDE: usize = 2;
+    fn of(value: f64) -> Self {
+        Two([value; 2])
+    }
+    fn sqrt(self) -> Self {
+        Two(self.0.map(Number::sqrt))
+    }
+    fn cbrt(self) -> Self {
+        Two(self.0.map(Number::cbrt))
+    }
+    fn ln(self) -> Self {
+        Two(self.0.map(Number::ln))
+    }
+    fn exp(self) -> Self {
+        Two(self.0.map(Number::exp))
+    }
+    fn abs(self) -> Self {
+        Two(self.0.map(Number::abs))
+    }
+    fn min(self, other: Self) -> Self {
+        Two([self.0[0].min(other.0[0]), self.0[1].min(other.0[1])])
+    }
+    fn max(self, other: Self) -> Self {
+        Two([self.0[0].max(other.0[0]), self.0[1].max(other.0[1])])
+    }
+    fn at_least(self, other: Self) -> u32 {
+        u32::from(self.0[0] >= other.0[0]) | u32::from(self.0[1] >= other.0[1]) << 1
+    }
+    fn select(lanes: u32, there: Self, elsewhere: Self) -> Self {
+        let pick = |lane: usize| if lanes >> lane & 1 == 1 { there.0[lane] } else { elsewhere.0[lane] };
+        Two([pick(0), pick(1)])
+    }
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    fn from_lanes(mut f: impl FnMut(usize) -> f64) -> Self {
+        Two([f(0), f(1)])
+    }
+}
+
+/// Two particles side by side answer with the same bits as one after the other, whatever each does.
+pub fn lanes_know_nothing_of_each_other<L: Law<f64>, W: Law<Two>>(law: &L, wide: &W, paths: usize) {
+    let mut chance = Chance(13);
+    for path in 0..paths {
+        let size = [[1e-6, 0.3], [1e-3, 0.0], [0.05, 1e-3], [0.1, 0.1]][path % 4];
+        let dt = [1e-6, 1e-3, 1.0][path % 3];
+        let mut single = [(Matrix::IDENTITY, Symmetric::ZERO, L::History::ZERO); 2];
+        let (mut stress, mut history) = (Symmetric::ZERO, W::History::ZERO);
+        for _ in 0..10 {
+            let steps = size.map(|size| chance.deformation(size));
+            for ((deformation, stress, history), increment) in single.iter_mut().zip(steps) {
+                *deformation = increment * *deformation;
+                let jacobian = deformation.det();
+                let motion = Motion { deformation: *deformation, jacobian, increment, stress: *stress, dt };
+                let response = law.respond(&motion, history);
+                (*stress, *history) = (response.stress, response.history);
+            }
+            let both = |of: [Matrix<f64>; 2]| Matrix::from_fn(|i, j| Two(of.map(|one| one.0[i][j])));
+            let deformation = [single[0].0, single[1].0];
+            let jacobian = Two(deformation.map(|one| one.det()));
+            let (deformation, increment) = (both(deformation), both(steps));
+            let motion = Motion { deformation, jacobian, increment, stress, dt: Two([dt; 2]) };
+            let response = wide.respond(&motion, &history);
+            (stress, history) = (response.stress, response.history);
+            let waves = wide.wave_modulus(&deformation, jacobian, &history);
+            let energy = wide.strain_energy(&deformation, &stress, &history);
+            for (lane, (f, alone, remembered)) in single.iter().enumerate() {
+                let found = stress.0.iter().chain(history.entries()).chain([&waves, &energy]);
+                let last =
+                    [law.wave_modulus(f, f.det(), remembered), law.strain_energy(f, alone, remembered)];
+                let exact = alone.0.iter().chain(remembered.entries()).chain(&last);
+                for (found, exact) in found.zip(exact) {
+                    assert_eq!(found.0[lane].to_bits(), exact.to_bits(), "{path}: {found:?} {exact}");
+                }
+            }
+        }
+    }
 }
