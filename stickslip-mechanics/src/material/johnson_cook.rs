@@ -4,7 +4,7 @@
 //! ```text
 //! J q <= Y,   q = sqrt(3/2 s : s),   s = dev(sigma),   Y = (A + B a^n) (1 + C ln max(r/r_0, 1)) (1 - T^m)
 //! a: equivalent plastic strain,   r = da/dt,   W_p = integral of Y da      dissipated per undeformed volume
-//! T = min((T_room + x W_p/c - T_room)/(T_melt - T_room), 1)                c: heat capacity of a volume, rho c_p
+//! T = min(b W_p/(c (T_melt - T_room)), 1)                                  c: heat capacity of a volume, rho c_p
 //! ```
 //!
 //! It may fail (Johnson and Cook 1985), where D comes to one:
@@ -15,7 +15,7 @@
 //! Then it bears the pressure of its volume alone, m = min(K ln J, 0), so that a gap must close before it is pressed; what
 //! was stored in shear and tension is dissipated.
 //!
-//! The part x of the plastic work (Taylor and Quinney 1934) warms the material, and no heat is conducted: so it is where
+//! The part b of the plastic work (Taylor and Quinney 1934) warms the material, and no heat is conducted: so it is where
 //! flow is faster than heat spreads. At T_melt nothing is left of the strength. Rates below r_0 harden nothing. The yield
 //! stress bounds the Kirchhoff stress, as in von Mises' law here. In a step the growth x of a solves
 //!
@@ -86,7 +86,7 @@ pub struct Softening<T> {
     pub room_temperature: T,
     /// c = rho c_p [J/m^3/K].
     pub heat_capacity: T,
-    /// x, part of the plastic work that is heat [-].
+    /// b, part of the plastic work that is heat [-].
     pub heated_share: T,
 }
 
@@ -113,7 +113,7 @@ const HISTORY: [History; 4] = [
 
 /// T_room where none is given [K].
 const USUAL_ROOM: f64 = 293.15;
-/// x where none is given.
+/// b where none is given.
 const USUAL_SHARE: f64 = 0.9;
 /// Trials of a step at most.
 const MOST_TRIALS: usize = 40;
@@ -616,7 +616,7 @@ mod tests {
     }
 
     /// Uniaxial strain rates from 1e-4 to 1e4 per second to a strain of 0.5: the flow stress is the formula's, with the
-    /// temperature of dT = x Y/c da, here by the midpoint rule in ten thousand steps.
+    /// temperature of dT = b Y/c da, here by the midpoint rule in ten thousand steps.
     #[test]
     fn a_bar_of_copper_flows_by_the_formula() {
         for rate in [1e-7, 1e-3, 1.0, 10.0] {
