@@ -193,7 +193,7 @@ fn two_hundred_disks_leave_thirteen_megabytes() {
 gravity = [0, "-9.81 m/s^2"]
 time.end = "0.15 s"
 parameters = { radius = "5 mm", width = "20 cm" }
-space = { dimension = "plane-strain", cell = "radius / 2.77" }
+space = { dimension = "plane-strain", interior = "grid", cell = "radius / 2.77" }
 materials.rubber = { density = "1000 kg/m^3", neo_hookean = { young_modulus = "25 kPa", poisson_ratio = 0.3 } }
 contact = [{ friction = 0.3 }]
 

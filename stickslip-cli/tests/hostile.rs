@@ -109,7 +109,7 @@ fn an_image_of_many_labels_is_read_in_a_while() {
     encoder.write_header().unwrap().write_image_data(&pixels).unwrap();
     workplace.write(
         "scene.toml",
-        "[space]\ndimension = \"2d\"\ncell = 0.01\n[time]\nend = 1e-5\n[materials.m]\ndensity = 1000\n\
+        "[space]\ndimension = \"2d\"\ninterior = \"grid\"\ncell = 0.01\n[time]\nend = 1e-5\n[materials.m]\ndensity = 1000\n\
          neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 }\n[[images]]\nname = \"b\"\nmaterial = \"m\"\n\
          file = \"labels.png\"\npixel = 0.02\n",
     );
@@ -131,7 +131,7 @@ fn names_that_are_no_text_are_names() {
     let places = (0..64).map(|i| [0.025 + 0.05 * f64::from(i % 8), 0.025 + 0.05 * f64::from(i / 8)]);
     let rows: String = places.map(|[x, y]| format!("{x},{y},0.0025\n")).collect();
     fs::write(inside.join("grains.csv"), format!("x,y,volume\n{rows}")).unwrap();
-    let scene = "[parameters]\nspeed = 1\n[space]\ndimension = \"2d\"\ncell = 0.1\n[time]\nend = 1e-3\n[materials.m]\n\
+    let scene = "[parameters]\nspeed = 1\n[space]\ndimension = \"2d\"\ninterior = \"grid\"\ncell = 0.1\n[time]\nend = 1e-3\n[materials.m]\n\
                  density = 1000\nneo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 }\n\
                  [[point_clouds]]\nname = \"b\"\nmaterial = \"m\"\nfile = \"grains.csv\"\nvelocity = [\"speed\", 0]\n";
     let path = inside.join(name(b"sc\xe8ne.toml"));
@@ -154,7 +154,7 @@ fn names_that_are_no_text_are_names() {
 #[test]
 fn names_in_files_of_particles_have_no_control_characters() {
     let workplace = Workplace::new();
-    let scene = "[space]\ndimension = \"2d\"\ncell = 0.1\n[time]\nend = 1e-3\n[materials.m]\ndensity = 1000\n\
+    let scene = "[space]\ndimension = \"2d\"\ninterior = \"grid\"\ncell = 0.1\n[time]\nend = 1e-3\n[materials.m]\ndensity = 1000\n\
                  neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 }\n\
                  [[point_clouds]]\nname = \"b\"\nmaterial = \"m\"\nfile = \"grains.csv\"\n";
     workplace.write("scene.toml", scene);
@@ -275,7 +275,7 @@ fn a_pipe_in_the_place_of_a_mesh_is_refused_and_not_waited_for() {
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     let solid = |file: &str| {
         format!(
-            "[space]\ndimension = \"3d\"\ncell = 0.1\n[time]\nend = 1\n[materials.m]\ndensity = 1\n\
+            "[space]\ndimension = \"3d\"\ninterior = \"grid\"\ncell = 0.1\n[time]\nend = 1\n[materials.m]\ndensity = 1\n\
              neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }}\n[[bodies]]\nname = \"a\"\nmaterial = \"m\"\n\
              shape.mesh = {{ file = \"{file}\" }}\n"
         )
@@ -454,7 +454,7 @@ fn a_probe_that_sees_nothing_is_told() {
 #[test]
 fn a_run_of_which_nothing_is_left_is_no_failure() {
     let workplace = workplace();
-    let scene = "[space]\ndimension = \"plane-strain\"\ncell = 0.1\n\
+    let scene = "[space]\ndimension = \"plane-strain\"\ninterior = \"grid\"\ncell = 0.1\n\
         domain = { min = [0, 0], max = [1, 1], leaving = \"remove\" }\n[time]\nend = 0.2\n\
         [materials.rubber]\ndensity = 1000\nneo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }\n\
         [[bodies]]\nname = \"ball\"\nmaterial = \"rubber\"\nshape.ball = { center = [0.5, 0.5], radius = 0.2 }\n\
@@ -484,7 +484,7 @@ fn below(path: &std::path::Path) -> std::collections::BTreeSet<String> {
 const ELSEWHERE: &str = r#"
 title = "TOP {word}"
 gravity = [0, -10]
-space = { dimension = "plane-strain", cell = 0.25 }
+space = { dimension = "plane-strain", interior = "grid", cell = 0.25 }
 time.end = 0.01
 parameters = { word = "w" }
 [materials."TOP"]

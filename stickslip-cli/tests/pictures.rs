@@ -128,7 +128,7 @@ fn what_does_not_fit_is_refused() {
 
 /// A ball above a half-space.
 const DROPPED: &str = r#"
-    space = { dimension = "3d", cell = 0.1 }
+    space = { dimension = "3d", interior = "grid", cell = 0.1 }
     gravity = [0, 0, -10]
     time.end = 0.02
     materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
@@ -214,7 +214,7 @@ fn in_space_half_spaces_have_clean_edges_and_the_camera_moves() {
 }
 
 const BALLS: &str = r#"
-    space = { dimension = "3d", cell = "2 cm" }
+    space = { dimension = "3d", interior = "grid", cell = "2 cm" }
     gravity = [0, 0, "-9.81 m/s^2"]
     time.end = "2 ms"
     outputs.particles = "1 ms"

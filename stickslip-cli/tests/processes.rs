@@ -68,7 +68,7 @@ fn a_file_that_is_another_on_one_machine_is_named() {
     workplace.write("cloud.csv", &format!("x,y,volume\n{}", rows("0.0025")));
     workplace.write("stale.csv", &format!("x,y,volume\n{}", rows("0.0024")));
     let cloud = "[[point_clouds]]\nname = \"cloud\"\nmaterial = \"m\"\nfile = \"cloud.csv\"\n";
-    let scene = "[parameters]\nfriction = 0.3\n[space]\ndimension = \"2d\"\ncell = 0.1\n[time]\nend = 1e-3\n\
+    let scene = "[parameters]\nfriction = 0.3\n[space]\ndimension = \"2d\"\ninterior = \"grid\"\ncell = 0.1\n[time]\nend = 1e-3\n\
                  [materials.m]\ndensity = 1000\nneo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 }\n";
     workplace.write("scene.toml", &format!("{scene}{cloud}"));
     let program = env!("CARGO_BIN_EXE_stickslip");

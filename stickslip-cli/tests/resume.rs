@@ -242,6 +242,7 @@ const PACKING: &str = r#"
 gravity = [0, "-9.81 m/s^2"]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = "2 mm"
 [time]
 end = "25 ms"

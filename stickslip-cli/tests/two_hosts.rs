@@ -405,6 +405,7 @@ cell = "31.25 mm"
 radius = "2 * cell"
 [space]
 dimension = "3d"
+interior = "grid"
 cell = "cell"
 basis = "linear"
 [time]
@@ -431,6 +432,7 @@ const STACK: &str = r#"
 gravity = [0.5, 0, -9.81]
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, -1, 0], max = [2, 2, 3], z_min = "fixed" }
 [time]
@@ -455,6 +457,7 @@ const GLUED: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.05
 domain = { min = [0, -1], max = [4, 2], x_min = "fixed" }
 [time]
@@ -490,6 +493,7 @@ const MIRROR: &str = r#"
 gravity = [0, 0, -9.81]
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, 0, -1], max = [3, 2, 3], y_min = "symmetry" }
 [time]
@@ -705,7 +709,7 @@ fn bodies_elsewhere_take_little_memory() {
     let least = |name: &str, other: &str| {
         let scene = format!(
             r#"
-            space = {{ dimension = "3d", cell = 1, basis = "linear" }}
+            space = {{ dimension = "3d", interior = "grid", cell = 1, basis = "linear" }}
             time.end = 0.01
             outputs.tables = 0.01
             materials.sand = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}

@@ -67,7 +67,7 @@ mod tests {
     fn scene(block: &str, height: f64) -> Scene {
         let text = format!(
             r#"
-            space = {{ dimension = "3d", cell = 0.1 }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.1 }}
             time.end = 1
             materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
             [[bodies]]

@@ -749,6 +749,7 @@ mod tests {
     const SCENE: &str = r#"
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 [time]
 end = 1

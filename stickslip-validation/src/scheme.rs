@@ -98,6 +98,7 @@ mod tests {
         let text = format!(
             "[space]
 dimension = \"plane-strain\"
+interior = \"grid\"
 cell = 1
 {space}
 [time]

@@ -38,7 +38,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 const WORLD: &str = r#"
-    space = { dimension = "3d", cell = "25 mm", particles_per_side = 2, basis = "BASIS", domain = DOMAIN }
+    space = { dimension = "3d", interior = "grid", cell = "25 mm", particles_per_side = 2, basis = "BASIS", domain = DOMAIN }
     time = { end = "1 s", transfer = "TRANSFER" }
     DAMPING
     materials.rubber = { density = "1000 kg/m^3", volume_change = "CHANGE", neo_hookean = { bulk_modulus = "6 MPa", shear_modulus = "3 MPa" } }

@@ -42,7 +42,7 @@ fn the_stress_of_a_packing_is_the_pressure_of_its_walls() {
     let (inner_low, inner_high) = (low + 0.2 * side, high - 0.2 * side);
     let text = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.25 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.25 }}
         time.end = {end}
         damping.viscous = 0.5
         materials.soft = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}

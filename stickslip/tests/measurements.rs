@@ -35,7 +35,7 @@ fn bar() -> String {
     let probes: String = probes.iter().map(|(name, x, anchor)| probe(name, *x, anchor)).collect();
     format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = {h} }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
         time.end = 0.9
         materials.steel = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
         [[bodies]]
@@ -254,6 +254,7 @@ fn probes_at_the_bore_of_a_cylinder_have_lames_stress() {
         r#"
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.125
         domain = {{ min = [0, 0], max = [3, 3], x_min = "symmetry", y_min = "symmetry" }}
         [time]

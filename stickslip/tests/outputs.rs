@@ -386,7 +386,7 @@ fn a_camera_leaves_its_frames_a_table_and_an_animation() {
 #[test]
 fn snapshots_hold_what_is_asked_for() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = 0.1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.1 }
         time.end = 0.01
         materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
         [[bodies]]
@@ -433,7 +433,7 @@ fn snapshots_hold_what_is_asked_for() {
 #[test]
 fn the_table_of_bodies_has_rows_of_choice() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = 0.1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.1 }
         time.end = 0.01
         outputs.bodies = ["disk 0", "disk *2"]
         materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }

@@ -25,6 +25,7 @@ const PLANE: &str = concat!(
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 precision = "double"
 [time]
@@ -103,6 +104,7 @@ const SPACE: &str = r#"
 gravity = [0, 0, -9.81]
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 0.25
 basis = "spline"
 domain = { min = [-1, -1, 0], max = [1, 1, 3], z_min = "fixed", y_min = "symmetry" }
@@ -135,6 +137,7 @@ const LOSING: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, -2], max = [2, 2], leaving = "remove" }
 [time]
@@ -181,6 +184,7 @@ damping = { local = 0.02 }
 gravity = ["2 * sin(30 * t)", { table = [[0, -9.81], ["0.1 s", -2], ["0.3 s", -9.81]] }]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, 0], max = [1.4, 2.2], y_min = "fixed", x_min = "symmetry" }
 [time]
@@ -240,6 +244,7 @@ const PERIODIC: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 [space.domain]
 min = [0, -0.5]
@@ -275,6 +280,7 @@ const TORN: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-stress"
+interior = "grid"
 cell = 0.05
 basis = "cpdi"
 domain = { min = [0, -1], max = [4, 2], x_min = "fixed" }
@@ -315,6 +321,7 @@ const MESHED: &str = r#"
 gravity = [0, 0, -9.81]
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 0.125
 basis = "cpdi"
 [time]

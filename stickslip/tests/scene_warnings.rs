@@ -7,7 +7,7 @@ use stickslip::scene;
 
 const DOUBTFUL: &str = r#"
 gravity = [0, "-9.81 m/s^2"]
-space = { dimension = "plane-strain", cell = "1 cm" }
+space = { dimension = "plane-strain", interior = "grid", cell = "1 cm" }
 time.end = "1 s"
 materials.rubber = { density = 1000, neo_hookean = { shear_modulus = "1 MPa", poisson_ratio = 0.499 } }
 materials.steel = { density = 8000, neo_hookean = { young_modulus = "200 GPa", poisson_ratio = 0.3 } }

@@ -27,6 +27,7 @@ const PLANE: &str = concat!(
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-2, -1], max = [3, 4], x_min = "symmetry" }
 [time]
@@ -86,6 +87,7 @@ const PERIODIC: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 precision = "single"
 domain = { min = [0, 0], max = [1.2, 2], x_min = "periodic", x_max = "periodic", y_min = "fixed" }
@@ -121,6 +123,7 @@ const MESHED: &str = r#"
 gravity = [0, 0, -9.81]
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 0.125
 basis = "cpdi"
 [time]
@@ -157,6 +160,7 @@ damping = { local = 0.02 }
 gravity = ["2 * sin(30 * t)", { table = [[0, -9.81], ["0.1 s", -2], ["0.3 s", -9.81]] }]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, 0], max = [1.4, 2.2], y_min = "fixed", x_min = "symmetry" }
 [time]
@@ -218,6 +222,7 @@ const STACKED: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 basis = "linear"
 [time]
@@ -265,6 +270,7 @@ const LOSING: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, -1], max = [2, 2], leaving = "remove" }
 [time]
@@ -342,6 +348,7 @@ const DROPPED: &str = r#"
 gravity = [0, 0, "-9.81 * (1 + 0.3 * sin(60 * t))"]
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 0.125
 basis = "linear"
 [time]
@@ -587,7 +594,7 @@ fn ranks_share_files_of_many_particles() {
         };
         let bodies = [body("first", 0.0, 14.0), body("middle", 20.0, 14.0), body("last", 40.0, 6.0)].concat();
         format!(
-            "space = {{ dimension = \"plane-strain\", cell = 0.1 }}\ntime = {{ end = 0.02 }}\n\
+            "space = {{ dimension = \"plane-strain\", interior = \"grid\", cell = 0.1 }}\ntime = {{ end = 0.02 }}\n\
              materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e4, poisson_ratio = 0.3 }} }}\n\
              outputs = {{ particles = 0.01, snapshots = {{ {snapshots} }}, \
              fringes = {{ interval = 0.005, stress_parameter = 1e3, width = 200 }} }}\n{bodies}"
@@ -619,7 +626,7 @@ fn ranks_share_files_of_many_particles() {
 #[test]
 fn ranks_share_files_of_many_nodes() {
     let text = r#"
-space = { dimension = "plane-strain", cell = 0.1, basis = "linear" }
+space = { dimension = "plane-strain", interior = "grid", cell = 0.1, basis = "linear" }
 time = { end = 0.02 }
 materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
 outputs = { grid = 0.015 }
@@ -656,7 +663,7 @@ fn ranks_see_the_light_that_one_sees() {
         format!(
             r#"
 gravity = [0, -9.81]
-space = {{ dimension = "plane-strain", cell = 0.1 }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
 time = {{ end = 0.02 }}
 materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -25,6 +25,7 @@ gravity = [0, -10]
 parameters.steps = 1
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, 0], max = [1, 1], y_min = "fixed" }
 [time]

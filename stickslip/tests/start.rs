@@ -16,6 +16,7 @@ const PACKING: &str = r#"
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 [time]
 end = 0.3

@@ -13,7 +13,7 @@ use stickslip::scene::{self, Scene};
 
 /// A block of 10 by 4 cells of 10 cm with four particles in each, about the origin.
 const SCENE: &str = r#"
-    space = { dimension = "plane-strain", cell = 0.1, basis = "gimp" }
+    space = { dimension = "plane-strain", interior = "grid", cell = 0.1, basis = "gimp" }
     time = { end = 1 }
     materials.gel = { density = 1000, neo_hookean = { bulk_modulus = 2e4, shear_modulus = 1e4 } }
     [[bodies]]
@@ -290,7 +290,7 @@ fn a_check_that_stops_ends_the_run_with_all_records() {
 fn a_run_that_a_check_stopped_goes_on_once_the_scene_lets_it() {
     let out = tempfile::tempdir().unwrap();
     let text = r#"
-        space = { dimension = "plane-strain", cell = "2 cm" }
+        space = { dimension = "plane-strain", interior = "grid", cell = "2 cm" }
         time = { end = "40 ms" }
         health = { speed = { then = "stop", bound = 1e-6 } }
         materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
@@ -440,6 +440,7 @@ fn bodies_that_push_through_a_periodic_face_are_sound() {
             r#"
             [space]
             dimension = "plane-strain"
+            interior = "grid"
             cell = 0.05
             [space.domain]
             min = [0, -1]
@@ -568,7 +569,7 @@ fn a_part_that_moves_as_fast_as_waves_is_found() {
 #[test]
 fn one_fast_particle_is_found_whichever_it_is() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = 0.01 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.01 }
         time.end = 1e-7
         health = { default = "ignore", speed = "warn" }
         materials.gel = { density = 1000, neo_hookean = { bulk_modulus = 2e4, shear_modulus = 1e4 } }
@@ -611,7 +612,7 @@ fn free_rigid_bodies_that_run_away_are_found() {
     let kinds = |rigid: &str| -> Vec<(String, Option<String>)> {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.05 }}
             time.end = 1e-3
             materials.gel = {{ density = 1000, neo_hookean = {{ bulk_modulus = 2e4, shear_modulus = 1e4 }} }}
             [[bodies]]
@@ -640,7 +641,7 @@ fn who_makes_steps_short_is_known() {
     let limit = |bodies: &str, time: &str| {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.05 }}
             time = {{ end = 1{time} }}
             materials.gel = {{ density = 1000, neo_hookean = {{ bulk_modulus = 2e4, shear_modulus = 1e4 }} }}
             {bodies}
@@ -670,7 +671,7 @@ fn contact_that_the_grid_does_not_resolve_is_recorded() {
     let text = |health: &str| {
         format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = "2 cm" }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = "2 cm" }}
             time.end = "0.15 s"
             {health}
             materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = "1 MPa", poisson_ratio = 0.3 }} }}
@@ -736,7 +737,7 @@ fn contact_that_the_grid_does_not_resolve_is_recorded() {
 #[test]
 fn flat_faces_are_not_judged_as_round_ones() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = 0.25 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.25 }
         time.end = 0.02
         health.contact = "warn"
         materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0 } }
@@ -783,7 +784,7 @@ fn bodies_at_rest_are_not_doubted_for_their_round_off() {
         format!(
             r#"
             gravity = [{x}, {y}]
-            space = {{ dimension = "plane-strain", cell = 0.02 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.02 }}
             time.end = 0.2
             materials.wood = {{ density = 1000, hypoelastic = {{ young_modulus = 1e7, poisson_ratio = 0.3 }} }}
             contact = [{{ friction = 0.5 }}]
@@ -833,7 +834,7 @@ fn a_value_that_is_no_number_ends_the_run() {
 #[test]
 fn a_body_that_heat_leaves_no_size_ends_the_run() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = 0.01 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.01 }
         time.end = 1e-3
         loads = [{ body = "a", temperature = -200000 }]
         materials.hot = { density = 1000, thermal_expansion = 1e-5, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
@@ -922,7 +923,7 @@ fn blocks_that_fly_side_by_side_are_sound() {
         )
     };
     let text = format!(
-        "space = {{ dimension = \"plane-strain\", cell = 0.1 }}\ntime = {{ end = 0.1 }}\n\
+        "space = {{ dimension = \"plane-strain\", interior = \"grid\", cell = 0.1 }}\ntime = {{ end = 0.1 }}\n\
          materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e4, poisson_ratio = 0.3 }} }}\n{}{}",
         block("one", 0.0),
         block("other", 10.0)
@@ -935,7 +936,7 @@ fn blocks_that_fly_side_by_side_are_sound() {
 #[test]
 fn two_disks_that_collide_and_ring_are_sound() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = "2 cm", basis = "gimp" }
+        space = { dimension = "plane-strain", interior = "grid", cell = "2 cm", basis = "gimp" }
         time = { end = "0.1 s" }
         materials.gel = { density = 1000, neo_hookean = { young_modulus = "1 MPa", poisson_ratio = 0.3 } }
         [[bodies]]
@@ -964,6 +965,7 @@ fn motion_that_becomes_noise_is_found() {
             r#"
             [space]
             dimension = "3d"
+            interior = "grid"
             cell = 0.005
             domain = {{ min = [-0.04, -0.04, 0], max = [0.04, 0.04, 0.12], z_min = "fixed" }}
             [time]
@@ -994,7 +996,7 @@ fn motion_that_becomes_noise_is_found() {
 fn impacts_of_rigid_bodies_are_no_noise() {
     let text = r#"
         gravity = [0, -9.81]
-        space = { dimension = "plane-strain", cell = 0.05 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.05 }
         time.end = 0.6
         [materials.gel]
         density = 1000
@@ -1032,7 +1034,7 @@ fn impacts_of_rigid_bodies_are_no_noise() {
 #[test]
 fn rings_that_meet_head_on_are_not_doubted() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = "4 mm" }
+        space = { dimension = "plane-strain", interior = "grid", cell = "4 mm" }
         time.end = "40 ms"
         [materials.rubber]
         density = 1000
@@ -1064,7 +1066,7 @@ fn local_damping_of_what_turns_is_told() {
         let text = format!(
             r#"
             gravity = [0, -{gravity}]
-            space = {{ dimension = "plane-strain", cell = 0.1, domain = {{ min = [-2, -1], max = [2, 1], y_min = "fixed" }} }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1, domain = {{ min = [-2, -1], max = [2, 1], y_min = "fixed" }} }}
             time = {{ end = 4, max_step = 2e-3 }}
             damping.local = 0.3
             [materials.gel]

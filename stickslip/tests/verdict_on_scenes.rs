@@ -66,7 +66,7 @@ fn a_strip_that_is_pulled_until_the_grid_tears_it_is_told() {
     let pulled = |basis: &str| {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-stress", cell = 0.1, basis = "{basis}" }}
+            space = {{ dimension = "plane-stress", interior = "grid", cell = 0.1, basis = "{basis}" }}
             time.end = 160
             damping.viscous = 0.3
             [materials.rubber]
@@ -97,7 +97,7 @@ fn a_disk_that_is_thrown_hard_is_told_where_it_tears() {
     let thrown = |basis: &str| {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.2, basis = "{basis}" }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.2, basis = "{basis}" }}
             time.end = 12
             [materials.rubber]
             density = 1

@@ -240,6 +240,7 @@ fn side_by_side(order: &Order, count: usize) -> Result<Vec<BenchSample>, Failure
 const BLOCK: &str = r#"
 [space]
 dimension = "3d"
+interior = "grid"
 cell = 1
 basis = "linear"
 [time]

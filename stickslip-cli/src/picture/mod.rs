@@ -595,7 +595,7 @@ mod tests {
         let setting = Setting { round: vec![None; 2], ..setting([0.0, 0.0, -9.81], [-1.0, 0.0, 1.0]) };
         let quantity = ColorQuantity::Vx;
         let text = r#"
-            space = { dimension = "3d", cell = 0.2 }
+            space = { dimension = "3d", interior = "grid", cell = 0.2 }
             time.end = 1
             materials.rubber = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
             bodies = [{ name = "ball", material = "rubber", shape.ball = { center = [-1, 0, 1], radius = 1 } },

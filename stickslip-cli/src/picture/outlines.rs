@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn a_shape_goes_where_its_particles_are() {
         let text = r#"
-            space = { dimension = "plane-strain", cell = 0.25 }
+            space = { dimension = "plane-strain", interior = "grid", cell = 0.25 }
             time.end = 1
             materials.iron = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
             bodies = [

@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn half_spaces_at_rest_are_floors() {
         let text = r#"
-            space = { dimension = "plane-strain", cell = 0.1 }
+            space = { dimension = "plane-strain", interior = "grid", cell = 0.1 }
             time.end = 1
             materials.iron = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
             bodies = [

@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     const BALL: &str = r#"
-        space = { dimension = "3d", cell = 0.25 }
+        space = { dimension = "3d", interior = "grid", cell = 0.25 }
         time.end = 1
         materials.rubber = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 } }
         bodies = [

@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn the_first_rule_that_matches_holds_as_in_the_scene() {
         let text = r#"
-            space = { dimension = "plane-strain", cell = 1 }
+            space = { dimension = "plane-strain", interior = "grid", cell = 1 }
             time.end = 1
             materials.clay = { density = 1, neo_hookean = { young_modulus = 1, poisson_ratio = 0 } }
             materials.iron = { density = 1, neo_hookean = { young_modulus = 9, poisson_ratio = 0 } }

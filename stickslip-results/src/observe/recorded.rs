@@ -150,6 +150,7 @@ mod tests {
 
             [space]
             dimension = "3d"
+            interior = "grid"
             cell = 1
             domain = { min = [-4, 0, 0], max = [4, 4, 4], y_min = "symmetry" }
 

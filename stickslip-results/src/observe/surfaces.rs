@@ -357,7 +357,7 @@ mod tests {
     #[test]
     fn surfaces_move_with_their_bodies() {
         let text = r#"
-            space = { dimension = "plane-strain", cell = 0.1, domain = { min = [-2, -1], max = [6, 5] } }
+            space = { dimension = "plane-strain", interior = "grid", cell = 0.1, domain = { min = [-2, -1], max = [6, 5] } }
             time.end = 1
             outputs.snapshots.precision = "double"
             materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
@@ -459,7 +459,7 @@ mod tests {
     #[test]
     fn a_body_that_lost_particles_has_no_surface_any_more() {
         let text = r#"
-            space = { dimension = "3d", cell = 0.25 }
+            space = { dimension = "3d", interior = "grid", cell = 0.25 }
             time.end = 1
             materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e4, poisson_ratio = 0.3 } }
             [[bodies]]

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
-use crate::scene::{Body, BodyMotion, Dimension, Moment, Problem, Scene, Source};
+use crate::scene::{Body, BodyMotion, Dimension, Interior, Moment, Problem, Scene, Source};
 use crate::tensor::Vector;
 use serde::Serialize;
 
@@ -46,6 +46,9 @@ pub struct Report {
     pub cell: f64,
     /// Particles along each side of a cell, in the bodies with the fewest and with the most.
     pub particles_per_side: [usize; 2],
+    /// Where bodies that deform are computed, and why, if any could be on a grid of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interior: Option<String>,
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BodyReport>,
     /// The materials, in the order of the scene.
@@ -127,6 +130,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         dimension: scene.dimension,
         cell: scene.discretization.cell,
         particles_per_side: fewest_and_most(scene),
+        interior: interior(scene),
         bodies: scene
             .bodies
             .iter()
@@ -152,6 +156,20 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         contacts_unknown,
     };
     Ok(report.on(MachineSpeed::default()))
+}
+
+/// Where bodies that deform are computed, and why.
+fn interior(scene: &Scene) -> Option<String> {
+    let count = |of: Interior| {
+        let deforms = |&body: &usize| !scene.bodies[body].is_rigid() && scene.interior(body) == of;
+        (0..scene.bodies.len()).filter(deforms).count()
+    };
+    match (count(Interior::Reference), count(Interior::Grid), &scene.discretization.because) {
+        (0, _, Some(why)) => Some(format!("the common grid, as {why}")),
+        (0, _, None) => None,
+        (_, 0, _) => Some("bodies that deform on grids of their own".to_string()),
+        (own, common, _) => Some(format!("{own} bodies on grids of their own, {common} on the common grid")),
+    }
 }
 
 impl Report {

@@ -30,6 +30,9 @@ impl Display for Report {
             writeln!(f, "waves in {}: {longitudinal} m/s longitudinal, {shear} m/s shear", material.name)?;
         }
         writeln!(f)?;
+        if let Some(interior) = &self.interior {
+            writeln!(f, "interior     {interior}")?;
+        }
         writeln!(f, "particles    {}", self.particles)?;
         let [memory, copy] = [self.memory, self.checkpoint_memory].map(bytes);
         writeln!(f, "memory       {memory} (estimated), and {copy} more while a checkpoint is written")?;

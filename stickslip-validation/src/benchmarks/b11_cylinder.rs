@@ -52,7 +52,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
         "press",
         format!(
             r#"title = "Cylinder on a plane"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = {}
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -84,6 +84,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
             r#"title = "Sphere bouncing off a plane"
 [space]
 dimension = "3d"
+interior = "grid"
 cell = {h}
 domain = {{ min = [0, 0, {}], max = [{reach}, {reach}, {}], x_min = "symmetry", y_min = "symmetry" }}
 [time]

@@ -83,7 +83,7 @@ fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<(f64, f64),
         format!("slip_{before:.1}"),
         format!(
             r#"title = "Oblique impact of a disk"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 16
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -107,6 +107,7 @@ fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<f64, CaseFa
             r#"title = "Oblique impact of a sphere"
 [space]
 dimension = "3d"
+interior = "grid"
 cell = {h}
 domain = {{ min = [{}, 0, {}], max = [{}, {side}, {}], y_min = "symmetry" }}
 [time]

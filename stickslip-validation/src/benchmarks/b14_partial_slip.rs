@@ -211,7 +211,7 @@ law = "glued"
     };
     format!(
         r#"title = "Partial slip of two cylinders"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = {}
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 {}{}{}"#,

@@ -75,7 +75,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
         format!(
             r#"title = "Stack of ten blocks"
 gravity = [0, -{GRAVITY}]
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = {end}
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 {}[[bodies]]

@@ -123,7 +123,7 @@ fn slide(case: &Case, turn: f64, friction: f64, outcome: &mut Outcome) -> Result
         format!(
             r#"title = "Block on an incline"
 gravity = [{}, {}]
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time = {{ end = {END}, pic_share = 1 }}
 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
 [[bodies]]

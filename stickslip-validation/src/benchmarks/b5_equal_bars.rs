@@ -86,7 +86,7 @@ fn impact(case: &Case, i: usize, speed: f64, outcome: &mut Outcome) -> Result<()
         format!("speed_{speed}"),
         format!(
             r#"title = "Equal bars in impact"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 3
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
 [[bodies]]

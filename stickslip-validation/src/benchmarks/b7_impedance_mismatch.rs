@@ -70,7 +70,7 @@ fn strike(case: &Case, modulus: f64, density: f64, outcome: &mut Outcome) -> Res
         format!("modulus_{modulus}_density_{density}"),
         format!(
             r#"title = "Impedance mismatch"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = {end}
 materials.first = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
 materials.second = {{ density = {density}, neo_hookean = {{ young_modulus = {modulus}, poisson_ratio = 0 }} }}

@@ -63,7 +63,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
         "disks",
         format!(
             r#"title = "Two elastic disks"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 3
 materials.rubber = {{ density = 1000, hypoelastic = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -116,6 +116,7 @@ time.end = {END}
 materials.metal = {{ density = 1, von_mises = {{ young_modulus = 1, poisson_ratio = 0.3, yield_stress = {YIELD} }} }}
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = {h}
 basis = "gimp"
 domain.min = [0, -{thick}]

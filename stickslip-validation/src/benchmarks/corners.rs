@@ -76,7 +76,7 @@ fn push(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<(f64, f64), Cas
         format!(
             r#"title = "Block with sharp corners, pressed and pushed"
 gravity = [{}, {}]
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 0.6
 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
 [[bodies]]

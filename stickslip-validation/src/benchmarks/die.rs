@@ -106,7 +106,7 @@ fn press(case: &Case, i: usize, turn: f64, outcome: &mut Outcome) -> Result<(), 
         if turn == 0.0 { "aligned" } else { "rotated" },
         format!(
             r#"title = "Block pressed to half its height in a die"
-space = {{ dimension = "plane-strain", cell = {h}, basis = "gimp" }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h}, basis = "gimp" }}
 time.end = {END}
 materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 {bodies}{}"#,

@@ -102,7 +102,7 @@ fn collide(
         format!("offset_{}_{}_direction_{:.2}", offset[0], offset[1], direction.to_degrees()),
         format!(
             r#"title = "Registration"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 20
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -78,7 +78,7 @@ fn approach(
         format!("{arrangement}_{particles}_per_side_meeting_{meeting}"),
         format!(
             r#"title = "First contact"
-space = {{ dimension = "plane-strain", cell = 1, particles_per_side = {particles} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = 1, particles_per_side = {particles} }}
 time.end = {}
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
 [[bodies]]

@@ -118,6 +118,7 @@ fn press(
             r#"title = "Patch"
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = {h}
 domain = {{ min = [0, 0], max = [1, {}], x_min = "symmetry", x_max = "symmetry", y_min = "symmetry" }}
 [time]

@@ -60,7 +60,7 @@ fn strike(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<f64, CaseFail
         if turn == 0.0 { "aligned" } else { "rotated" },
         format!(
             r#"title = "Friction ratio"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 4
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -60,7 +60,7 @@ fn drop(case: &Case, name: &str, motion: &str, outcome: &mut Outcome) -> Result<
         name,
         format!(
             r#"title = "Rigid floor as the limit of a stiff one"
-space = {{ dimension = "plane-strain", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
 time.end = 14
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 materials.stiff = {{ density = 1000, neo_hookean = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}

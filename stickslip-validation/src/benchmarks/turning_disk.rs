@@ -93,7 +93,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
         "turning",
         format!(
             r#"title = "Squeezed disk that turns between frictionless walls"
-space = {{ dimension = "plane-strain", cell = {h}, basis = "gimp" }}
+space = {{ dimension = "plane-strain", interior = "grid", cell = {h}, basis = "gimp" }}
 time.end = {end}
 materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -16,6 +16,7 @@ fn scene(floor: &str) -> String {
         gravity = [0, -10]
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.1
         domain = {{ min = [-2, -0.3], max = [3, 2], y_min = "fixed" }}
         [time]

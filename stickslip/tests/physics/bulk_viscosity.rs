@@ -49,7 +49,7 @@ fn shock(update: &str, damping: &str) -> Shock {
     let mut simulation = start(&format!(
         r#"
         {damping}
-        space = {{ dimension = "plane-strain", cell = {CELL}, domain = {{ min = [-1, 0], max = [1, 0.01], y_min = "symmetry", y_max = "symmetry" }} }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = {CELL}, domain = {{ min = [-1, 0], max = [1, 0.01], y_min = "symmetry", y_max = "symmetry" }} }}
         time = {{ end = 1, stress_update = "{update}", courant = 0.3 }}
         [materials.fluid]
         density = 1
@@ -104,7 +104,7 @@ fn what_is_stretched_is_left_alone() {
     let mut simulation = start(
         r#"
         damping = { bulk_linear = 0.5, bulk_quadratic = 5 }
-        space = { dimension = "plane-strain", cell = 0.1, domain = { min = [-2, -1], max = [4, 3] } }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.1, domain = { min = [-2, -1], max = [4, 3] } }
         time.end = 1
         materials.rubber = { density = 1, neo_hookean = { young_modulus = 1e-6, poisson_ratio = 0 } }
         [[bodies]]

@@ -18,7 +18,7 @@ fn ratio(thickness: f64, end: f64) -> f64 {
     let (outer, below) = (1.0 + thickness, -0.9 * leg);
     let mut simulation = start(&format!(
         r#"
-        space = {{ dimension = "plane-stress", cell = {} }}
+        space = {{ dimension = "plane-stress", interior = "grid", cell = {} }}
         time.end = {end}
         damping.viscous = 0.3
         materials.band = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}

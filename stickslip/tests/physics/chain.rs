@@ -23,6 +23,7 @@ fn wave(cells: f64, spheres: usize) -> [f64; 2] {
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = "10 MPa", poisson_ratio = 0.3 }} }}
         [space]
         dimension = "3d"
+        interior = "grid"
         cell = "10 mm / {cells}"
         domain = {{ min = [-0.06, 0, -0.02], max = [0.3, 0.02, 0.02], y_min = "symmetry" }}
         [[bodies]]

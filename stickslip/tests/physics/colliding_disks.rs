@@ -92,7 +92,7 @@ fn disks(second: [f64; 2], (law, normal): (&str, &str), friction: f64) -> String
     let [x, y] = second;
     format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.05 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.05 }}
         time.end = 3
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}
         [[bodies]]
@@ -147,7 +147,7 @@ fn oblique_balls() {
         let (law, normal) = rule;
         let scene = format!(
             r#"
-            space = {{ dimension = "3d", cell = 0.05 }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.05 }}
             time.end = 3
             materials.rubber = {{ density = 1000, hypoelastic = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}
             [[bodies]]

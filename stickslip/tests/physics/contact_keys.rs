@@ -30,7 +30,7 @@ const CASES: [([f64; 2], &str, &str); 12] = [
 fn run([vx, vy]: [f64; 2], rule: &str, rigid: &str) -> (Vec<f64>, String) {
     let text = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time.end = 1
         materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
         [[bodies]]

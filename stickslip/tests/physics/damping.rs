@@ -16,7 +16,7 @@ use rayon::ThreadPoolBuilder;
 fn free_body(body: &str, time: &str) -> String {
     format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time = {{ end = 1, {time} }}
         damping.viscous = 5
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
@@ -107,6 +107,7 @@ fn falling_block(face: &str, from: f64) -> String {
         gravity = [0, -9.81]
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.1
         domain = {{ min = [{from}, -0.4], max = [1, 1], x_min = "{face}" }}
         [time]

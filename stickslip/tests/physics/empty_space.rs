@@ -14,6 +14,7 @@ fn text(min: f64, max: f64) -> String {
         r#"
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.0625
         domain = {{ min = [{min}, {min}], max = [{max}, {max}] }}
         [time]

@@ -24,7 +24,7 @@ fn slope(friction: f64, per_side: usize) -> String {
     format!(
         r#"
         gravity = [0, -10]
-        space = {{ dimension = "plane-strain", cell = 0.1, particles_per_side = {per_side} }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1, particles_per_side = {per_side} }}
         time.end = 1
         {RUBBER}
         [[bodies]]
@@ -88,7 +88,7 @@ fn contact_starts_when_surfaces_touch() {
             for (first, second) in [(bar(0.0), bar(1.0 + gap * cell)), (ball(0.0), ball(1.0 + gap * cell))] {
                 let mut simulation = start(&format!(
                     r#"
-                    space = {{ dimension = "plane-strain", cell = {cell}, particles_per_side = {per_side} }}
+                    space = {{ dimension = "plane-strain", interior = "grid", cell = {cell}, particles_per_side = {per_side} }}
                     time.end = 10
                     materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 100, poisson_ratio = 0 }} }}
                     [[bodies]]
@@ -123,7 +123,7 @@ fn waves_cross_between_unlike_bars() {
         let height = 4.0 * cell;
         let mut simulation = start(&format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = {cell} }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = {cell} }}
             time.end = 1
             materials.one = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
             materials.two = {{ density = {density}, neo_hookean = {{ young_modulus = {young_modulus}, poisson_ratio = 0 }} }}
@@ -164,7 +164,7 @@ fn disks_in_a_row_pass_the_wave_on_as_sharp_contact_does() {
     let cell = 1.0 / f64::from(cells);
     let mut text = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = {cell}, domain = {{ min = [-1, 0], max = [5, 1], y_min = "symmetry" }} }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = {cell}, domain = {{ min = [-1, 0], max = [5, 1], y_min = "symmetry" }} }}
         time.end = 9
         materials.glass = {{ density = 1, hypoelastic = {{ young_modulus = {}, poisson_ratio = {nu} }} }}
         [[bodies]]

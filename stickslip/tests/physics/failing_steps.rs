@@ -17,6 +17,7 @@ fn scene(motion: &str) -> String {
         r#"
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.1
         domain = {{ min = [-20, -2], max = [2, 2] }}
         [time]

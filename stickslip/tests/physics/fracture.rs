@@ -84,7 +84,7 @@ fn split(law: &str) -> [f64; 2] {
     let (cells, speed) = (8, 0.05);
     let text = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = "25 mm / {cells}" }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = "25 mm / {cells}" }}
         time.end = "50 um / ({speed} * 1 m/s)"
         materials.concrete = {{ density = 2400, damage = {{ young_modulus = 30e9, poisson_ratio = 0.2, tensile_strength = 3e6, fracture_energy = 20, {law} }} }}
         [[bodies]]

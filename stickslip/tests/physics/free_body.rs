@@ -55,7 +55,7 @@ fn a_block_in_the_plane() {
         for update in STRESS_UPDATES.into_iter().filter(|update| basis == "gimp" || *update != "last") {
             let scene = format!(
                 r#"
-                space = {{ dimension = "plane-strain", cell = 0.1, basis = "{basis}" }}
+                space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1, basis = "{basis}" }}
                 time = {{ end = 1, stress_update = "{update}" }}
                 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
                 [[bodies]]
@@ -78,7 +78,7 @@ fn a_block_in_space() {
         for update in STRESS_UPDATES.into_iter().filter(|update| basis == "gimp" || *update != "last") {
             let scene = format!(
                 r#"
-                space = {{ dimension = "3d", cell = 0.1, basis = "{basis}" }}
+                space = {{ dimension = "3d", interior = "grid", cell = 0.1, basis = "{basis}" }}
                 time = {{ end = 1, stress_update = "{update}" }}
                 materials.rubber = {{ density = 1000, hypoelastic = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
                 [[bodies]]

@@ -34,7 +34,7 @@ fn pendulum(end: f64) -> String {
     format!(
         r#"
         gravity = [0, -9.81]
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time = {{ end = {end}, max_step = 5e-4 }}
         {STEEL}
         [[bodies]]
@@ -94,7 +94,7 @@ fn a_mechanism_in_space_holds_together() {
     let scene = format!(
         r#"
         gravity = [0, 0, -9.81]
-        space = {{ dimension = "3d", cell = 0.1 }}
+        space = {{ dimension = "3d", interior = "grid", cell = 0.1 }}
         time = {{ end = 4, max_step = 5e-4 }}
         {STEEL}
         [[bodies]]
@@ -154,7 +154,7 @@ fn momentum_is_exchanged_with_a_body_that_deforms() {
         for update in ["first", "last", "modified-last"] {
             let scene = format!(
                 r#"
-                space = {{ dimension = "plane-strain", cell = 0.025 }}
+                space = {{ dimension = "plane-strain", interior = "grid", cell = 0.025 }}
                 time = {{ end = 2, stress_update = "{update}" }}
                 {GEL}
                 [[bodies]]
@@ -199,7 +199,7 @@ fn light_and_heavy_bodies_are_struck_alike() {
     for mass in [1e-2, 1e5] {
         let scene = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.05 }}
             time.end = 0.2
             {GEL}
             [[bodies]]
@@ -233,6 +233,7 @@ fn rolling(update: &str) -> String {
         gravity = ["9.81 * sin(0.3)", "-9.81 * cos(0.3)"]
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.05
         domain = {{ min = [-1, -1], max = [5, 3], y_min = "fixed" }}
         [time]
@@ -277,7 +278,7 @@ fn a_rigid_disk_rolls_on_a_floor_that_deforms() {
 fn motors_do_the_work_that_bodies_gain() {
     let scene = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         gravity = [0, -9.81]
         time = {{ end = 2, max_step = 1e-4 }}
         {GEL}
@@ -336,7 +337,7 @@ fn motors_do_the_work_that_bodies_gain() {
 fn a_spring_between_bodies_has_its_period() {
     let scene = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time = {{ end = 4, max_step = 1e-4 }}
         {GEL}
         [[bodies]]
@@ -629,7 +630,7 @@ fn boxes_slide_stand_and_tip() {
 fn motors_and_prescribed_motion_follow_tables() {
     let scene = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time = {{ end = 2, max_step = 1e-3 }}
         {GEL}
         [[bodies]]
@@ -677,7 +678,7 @@ fn a_planar_joint_leaves_a_plane_and_the_turning_in_it() {
     let scene = format!(
         r#"
         gravity = [0, 0, -10]
-        space = {{ dimension = "3d", cell = 0.1 }}
+        space = {{ dimension = "3d", interior = "grid", cell = 0.1 }}
         time = {{ end = 1, max_step = 1e-3 }}
         {STEEL}
         [[bodies]]
@@ -718,7 +719,7 @@ fn a_planar_joint_in_the_plane_turns_a_wheel_that_is_free() {
     let scene = format!(
         r#"
         gravity = [0, -10]
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time = {{ end = 1, max_step = 1e-3 }}
         {STEEL}
         [[bodies]]
@@ -833,7 +834,7 @@ fn springs_and_dashpots_of_joints_have_their_swing() {
 fn a_plate_on_a_slider_holds_its_force() {
     let scene = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time = {{ end = 2 }}
         {GEL}
         [[bodies]]

@@ -25,7 +25,7 @@ fn incline(friction: f64) -> String {
     format!(
         r#"
         gravity = [{}, {}]
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time.end = 1
         {RUBBER}
         [[bodies]]
@@ -140,7 +140,7 @@ fn a_block_rests_on_an_incline() {
 fn friction_takes_no_energy_where_nothing_slips() {
     let mut simulation = start(
         r#"
-        space = { dimension = "plane-strain", cell = 0.1, particles_per_side = 1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.1, particles_per_side = 1 }
         time.end = 12
         materials.elastic = { density = 1, hypoelastic = { young_modulus = 1, poisson_ratio = 0.214 } }
         [[bodies]]
@@ -185,7 +185,7 @@ fn every_pair_has_its_own_friction() {
     let mut scene = String::from(
         r#"
         gravity = [0, -10]
-        space = { dimension = "plane-strain", cell = 0.1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.1 }
         time.end = 1
         materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
         materials.stone = { density = 2000, hypoelastic = { young_modulus = 2e6, poisson_ratio = 0.3 } }

@@ -86,6 +86,7 @@ fn rest_is_not_found_while_gravity_grows() {
             {RUBBER}
             [space]
             dimension = "plane-strain"
+            interior = "grid"
             cell = 0.05
             domain = {{ min = [-0.2, 0], max = [0.4, 0.4], y_min = "fixed" }}
             [[bodies]]

@@ -22,7 +22,7 @@ fn heap() -> Box<dyn Simulation> {
     start(
         r#"
         gravity = [0, -1]
-        space = { dimension = "plane-strain", cell = 1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 1 }
         time = { end = 40, max_step = 0.02 }
         materials.stone = { density = 1, neo_hookean = { young_modulus = 1e3, poisson_ratio = 0.3 } }
         [[bodies]]
@@ -101,7 +101,7 @@ fn a_heap_goes_on_as_if_nothing_had_been() {
 fn packings_that_strike_each_other_keep_their_momentum() {
     let mut simulation = start(
         r#"
-        space = { dimension = "plane-strain", cell = 1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 1 }
         time = { end = 5, max_step = 0.02 }
         materials.stone = { density = 1, neo_hookean = { young_modulus = 1e3, poisson_ratio = 0.3 } }
         [[bodies]]

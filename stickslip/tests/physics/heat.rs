@@ -133,6 +133,7 @@ fn bend(cells: f64) -> f64 {
         hypoelastic = {{ young_modulus = {YOUNG}, poisson_ratio = 0 }}
         [space]
         dimension = "plane-stress"
+        interior = "grid"
         cell = {cell}
         domain = {{ min = [0, {low}], max = [0.25, {high}], x_min = "symmetry" }}
         [[bodies]]

@@ -51,7 +51,7 @@ fn a_disk_of_forty_pixels_rolls_as_the_exact_disk() {
         let text = format!(
             r#"
             gravity = ["8 * sin(0.2)", "-8 * cos(0.2)"]
-            space = {{ dimension = "plane-strain", cell = 0.125 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.125 }}
             time.end = 3
             {RUBBER}
             [[bodies]]

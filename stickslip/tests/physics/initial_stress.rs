@@ -35,6 +35,7 @@ fn a_column_at_rest_under_its_weight_stays_so() {
                 materials.soil = {{ density = 2000, {} }}
                 [space]
                 dimension = "plane-strain"
+                interior = "grid"
                 cell = 0.1
                 basis = "{basis}"
                 domain = {{ min = [0, 0], max = [0.4, 2], x_min = "symmetry", x_max = "symmetry", y_min = "symmetry" }}

@@ -46,7 +46,7 @@ fn compressed(count: usize, speed: f64) -> Vec<Look> {
     ];
     let mut simulation = start(&format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.25 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.25 }}
         time.end = {}
         damping.viscous = 0.2
         materials.soft = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}

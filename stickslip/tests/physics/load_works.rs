@@ -20,6 +20,7 @@ fn missing(more: &str) -> f64 {
         materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e7, poisson_ratio = 0.3 }} }}
         [space]
         dimension = "plane-stress"
+        interior = "grid"
         cell = 0.01
         domain = {{ min = [-0.1, -0.1], max = [0.3, 0.2] }}
         [[bodies]]
@@ -132,6 +133,7 @@ fn a_grip_that_goes_to_and_fro_gets_back_what_it_gave() {
         materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e7, poisson_ratio = 0.3 } }
         [space]
         dimension = "plane-stress"
+        interior = "grid"
         cell = 0.01
         [[bodies]]
         name = "bar"

@@ -26,6 +26,7 @@ fn bar(offset: f64, (basis, time): (&str, &str), more: &str) -> String {
         materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e7, poisson_ratio = 0.3 }} }}
         [space]
         dimension = "plane-stress"
+        interior = "grid"
         cell = {h}
         basis = "{basis}"
         domain = {{ min = [-0.1, -0.1], max = [0.3, 0.2] }}
@@ -232,6 +233,7 @@ fn an_absorbing_end_lets_waves_go() {
             materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e7, poisson_ratio = 0 }} }}
             [space]
             dimension = "plane-strain"
+            interior = "grid"
             cell = 0.01
             domain = {{ min = [-0.1, 0], max = [0.6, 0.04], y_min = "symmetry", y_max = "symmetry" }}
             [[bodies]]
@@ -388,6 +390,7 @@ fn half_of_a_held_and_pressed_body_is_as_the_whole() {
             materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
             [space]
             dimension = "plane-strain"
+            interior = "grid"
             cell = 0.1
             domain = {{ min = [{}, -1], max = [1, 2]{face} }}
             [[bodies]]

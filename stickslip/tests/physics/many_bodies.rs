@@ -21,7 +21,7 @@ use stickslip::{check, scene, step};
 fn packing(columns: usize, rows: usize) -> String {
     let mut text = String::from(
         r#"
-        space = { dimension = "plane-strain", cell = 0.8 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.8 }
         time.end = 1
         gravity = [0, -1]
         materials.rubber = { density = 1, neo_hookean = { young_modulus = 100, poisson_ratio = 0.3 } }
@@ -45,7 +45,7 @@ fn packing(columns: usize, rows: usize) -> String {
 #[test]
 fn a_hundred_thousand_are_ready_in_seconds() {
     let text = r#"
-        space = { dimension = "plane-strain", cell = 0.8 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.8 }
         time.end = 1
         gravity = [0, -1]
         materials.rubber = { density = 1, neo_hookean = { young_modulus = 100, poisson_ratio = 0.3 } }

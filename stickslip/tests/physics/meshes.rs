@@ -120,7 +120,7 @@ fn a_meshed_block_slides_on_a_meshed_slab_as_boxes_do() {
         let text = format!(
             r#"
             gravity = [5, 0, -8]
-            space = {{ dimension = "3d", cell = 0.125 }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.125 }}
             time.end = 1
             {RUBBER}
             [[bodies]]
@@ -154,7 +154,7 @@ fn a_ball_rolls_on_a_turned_and_scaled_slab_as_on_a_box() {
         let text = format!(
             r#"
             gravity = [0, 0, -8]
-            space = {{ dimension = "3d", cell = 0.125 }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.125 }}
             time.end = 1
             {RUBBER}
             [[bodies]]
@@ -186,7 +186,7 @@ fn a_rigid_block_slides_mesh_on_mesh() {
     let text = format!(
         r#"
         gravity = [5, 0, -8]
-        space = {{ dimension = "3d", cell = 0.125 }}
+        space = {{ dimension = "3d", interior = "grid", cell = 0.125 }}
         time = {{ end = 1, max_step = 1e-3 }}
         {RUBBER}
         contact = [{{ friction = 0.2 }}]
@@ -219,7 +219,7 @@ fn rigid_meshes_strike_each_other() {
     for (restitution, beside) in [(0.0, 0.0), (0.6, 0.0), (1.0, 0.0), (0.6, 0.125), (1.0, 0.125)] {
         let text = format!(
             r#"
-            space = {{ dimension = "3d", cell = 0.125 }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.125 }}
             time = {{ end = 1, max_step = 1e-3 }}
             {RUBBER}
             contact = [{{ friction = 0, restitution = {restitution} }}]
@@ -268,7 +268,7 @@ fn a_ball_of_triangles_has_its_mass() {
     for (cell, allowed) in [(0.1, 0.03), (0.05, 0.01)] {
         let text = format!(
             r#"
-            space = {{ dimension = "3d", cell = {cell} }}
+            space = {{ dimension = "3d", interior = "grid", cell = {cell} }}
             time.end = 1
             {RUBBER}
             [[bodies]]

@@ -20,7 +20,7 @@ use stickslip::door::ContactCursor;
 fn squeeze(volume_change: &str, update: &str) -> f64 {
     let mut simulation = start(&format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.1, domain = {{ min = [0, 0], max = [0.5, 2], x_min = "symmetry", x_max = "symmetry", y_min = "symmetry" }} }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1, domain = {{ min = [0, 0], max = [0.5, 2], x_min = "symmetry", x_max = "symmetry", y_min = "symmetry" }} }}
         time = {{ end = 10, stress_update = "{update}" }}
         [materials.rubber]
         density = 1

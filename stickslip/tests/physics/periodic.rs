@@ -259,6 +259,7 @@ fn a_bed_of_rigid_disks_flows_through_the_faces() {
         contact = [{{ friction = 0.3 }}]
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.5
         domain = {{ min = [0, -2], max = [{period}, 20], x_min = "periodic", x_max = "periodic" }}
         [[bodies]]
@@ -330,6 +331,7 @@ fn medium(basis: &str, velocity: [f64; 2]) -> Box<dyn Simulation> {
         r#"
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.1
         basis = "{basis}"
         [space.domain]
@@ -425,6 +427,7 @@ fn a_layer_without_end_slides_down_a_slope() {
             damping.bulk_linear = 0.1
             [space]
             dimension = "plane-strain"
+            interior = "grid"
             cell = 0.1
             domain = {{ min = [0, -0.4], max = [0.8, 1], x_min = "periodic", x_max = "periodic" }}
             [time]

@@ -29,7 +29,7 @@ fn a_disk_of_particles_rolls_as_the_exact_disk() {
         let text = format!(
             r#"
             gravity = ["8 * sin(0.2)", "-8 * cos(0.2)"]
-            space = {{ dimension = "plane-strain", cell = 0.125 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.125 }}
             time.end = 3
             {RUBBER}
             [[bodies]]
@@ -73,7 +73,7 @@ fn particles_begin_with_velocities_of_their_own() {
     std::fs::write(folder.path().join("disk.csv"), rows).expect("written");
     let text = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.125 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.125 }}
         time.end = 0.01
         {RUBBER}
         [[point_clouds]]

@@ -20,6 +20,7 @@ fn block(time: &str, more: &str) -> String {
         time = {{ end = "3 ms", {time} }}
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = "1 cm"
         [materials.soft]
         density = "1000 kg/m^3"

@@ -101,6 +101,7 @@ fn compare(name: &str, text: &str, steps: usize) {
 const DISK: &str = r#"
     [space]
     dimension = "plane-strain"
+    interior = "grid"
     cell = 0.1
     [time]
     end = 1

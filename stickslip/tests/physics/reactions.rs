@@ -30,6 +30,7 @@ fn a_fixed_face_gives_what_momentum_lacks() {
             {RUBBER}
             [space]
             dimension = "plane-strain"
+            interior = "grid"
             cell = 0.05
             domain = {{ min = [0, 0], max = [1, 1], y_min = "fixed", x_min = "symmetry" }}
             [[bodies]]
@@ -70,6 +71,7 @@ fn mirrors_bear_pressures() {
         {RUBBER}
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.05
         domain = {{ min = [0, 0], max = [1, 1], y_min = "symmetry", x_min = "symmetry" }}
         [[bodies]]
@@ -114,6 +116,7 @@ fn a_rigid_plate_bears_a_weight_off_its_middle() {
         {RUBBER}
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.05
         [[bodies]]
         name = "block"

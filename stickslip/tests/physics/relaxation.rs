@@ -22,6 +22,7 @@ pub const BAR: &str = r#"
     materials.gel = { density = 1000, neo_hookean = { young_modulus = 5e4, poisson_ratio = 0.3 } }
     [space]
     dimension = "plane-stress"
+    interior = "grid"
     cell = 5e-3
     domain = { min = [-0.02, -0.12], max = [0.02, 0], y_max = "fixed" }
     [[bodies]]
@@ -79,7 +80,7 @@ fn a_hanging_bar_finds_its_static_sag() {
 fn a_stack_comes_to_rest_on_its_floor() {
     let scene = r#"
         gravity = [0, -9.81]
-        space = { dimension = "plane-strain", cell = 0.01 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.01 }
         time = { end = 5, relax = {} }
         materials.gel = { density = 1000, neo_hookean = { young_modulus = 5e4, poisson_ratio = 0.3 } }
         contact = [{ friction = 0.5 }]

@@ -27,7 +27,7 @@ fn scene(block: &Block) -> String {
     format!(
         r#"
         gravity = [0, {gravity}]
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time.end = 1
         {RUBBER}
         [[bodies]]
@@ -192,7 +192,7 @@ fn contact_says_where_how_wide_and_how_far() {
 fn a_cylinder_on_its_side_touches_in_a_strip() {
     let text = format!(
         r#"
-        space = {{ dimension = "3d", cell = 0.125 }}
+        space = {{ dimension = "3d", interior = "grid", cell = 0.125 }}
         time.end = 1
         {RUBBER}
         [[bodies]]

@@ -15,6 +15,7 @@ use stickslip::march::{FailedStep, March, MarchError, Pace};
 const BLOW: &str = r#"
     [space]
     dimension = "plane-strain"
+    interior = "grid"
     cell = 0.1
     [time]
     end = 0.04

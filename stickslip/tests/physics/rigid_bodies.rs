@@ -19,7 +19,7 @@ fn a_punch_pushes_a_block() {
     for law in ["surface", "gap", "kinematic", "traction"] {
         let scene = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.05 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.05 }}
             time.end = 1
             {RUBBER}
             [[bodies]]
@@ -73,7 +73,7 @@ fn a_belt_drags_a_block() {
     let scene = format!(
         r#"
         gravity = [0, -10]
-        space = {{ dimension = "plane-strain", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
         time.end = 1
         {RUBBER}
         [[bodies]]
@@ -106,7 +106,7 @@ fn a_cylinder_turns_about_its_centre() {
     let (spin, end) = (2.0, 0.5);
     let mut simulation = start(
         r#"
-        space = { dimension = "plane-strain", cell = 0.1 }
+        space = { dimension = "plane-strain", interior = "grid", cell = 0.1 }
         time.end = 1
         materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
         [[bodies]]
@@ -136,7 +136,7 @@ fn a_hair_of_a_rigid_body_at_a_node_does_nothing() {
     let run = |drift: f64| {
         let mut simulation = start(&format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.1 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
             time = {{ end = 1, max_step = "0.5 ms" }}
             {RUBBER}
             [[bodies]]

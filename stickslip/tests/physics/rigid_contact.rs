@@ -324,7 +324,7 @@ fn a_body_without_weight_to_speak_of_is_struck() {
     for mass in [1e-6, 1e-9] {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.02 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.02 }}
             time.end = 0.1
             materials.soft = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
             bodies = [

@@ -41,6 +41,7 @@ fn a_bar_pulled_by_plates_that_hold_a_force() {
         contact = [{{ law = "glued" }}]
         [space]
         dimension = "plane-stress"
+        interior = "grid"
         cell = 0.01
         domain = {{ min = [-0.1, -0.1], max = [0.3, 0.2] }}
         [[bodies]]
@@ -108,6 +109,7 @@ fn a_triaxial_test_on_an_eighth_of_a_cube() {
         damping.local = 0.2
         [space]
         dimension = "3d"
+        interior = "grid"
         cell = 0.05
         [space.domain]
         min = [0, 0, 0]

@@ -25,6 +25,7 @@ fn walls_bear_half_of_what_is_in_a_silo() {
         materials.fill = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.4 }} }}
         [space]
         dimension = "plane-strain"
+        interior = "grid"
         cell = 0.125
         domain = {{ min = [0, -1], max = [2, 6], x_min = "symmetry" }}
         [[bodies]]
@@ -88,7 +89,7 @@ fn discharge(opening: f64, end: f64) -> f64 {
     let mut simulation = start(&format!(
         r#"
         gravity = [0, -1]
-        space = {{ dimension = "plane-strain", cell = 1 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 1 }}
         time = {{ end = {end}, max_step = 0.03 }}
         materials.stone = {{ density = 1, neo_hookean = {{ young_modulus = 1e3, poisson_ratio = 0.3 }} }}
         [[bodies]]

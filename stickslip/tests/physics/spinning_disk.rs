@@ -73,7 +73,7 @@ fn a_disk_in_the_plane() {
         let (law, w) = (law(name), spin());
         let scene = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = {} }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = {} }}
             time.end = 1
             materials.rubber = {law}
             [[bodies]]
@@ -94,7 +94,7 @@ fn angular_momentum_is_kept_by_coarse_and_fine_grids() {
     let [coarse, fine] = [8.0, 16.0].map(|cells| {
         let scene = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = {} }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = {} }}
             time.end = 1
             materials.rubber = {}
             [[bodies]]
@@ -123,6 +123,7 @@ fn a_slab_in_space() {
             r#"
             [space]
             dimension = "3d"
+            interior = "grid"
             cell = 0.125
             particles_per_side = 2
             domain = {{ min = [-2, -2, 0], max = [2, 2, 0.125], z_min = "symmetry", z_max = "symmetry" }}
@@ -148,7 +149,7 @@ fn the_books_close_with_pic() {
     for transfer in ["rflip", "flip"] {
         let scene = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.2 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.2 }}
             time = {{ end = 1, transfer = "{transfer}", pic_share = 0.02 }}
             materials.rubber = {}
             [[bodies]]

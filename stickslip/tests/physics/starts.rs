@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 fn bar(velocity: &str) -> String {
     format!(
         r#"
-        space = {{ dimension = "plane-stress", cell = 0.1 }}
+        space = {{ dimension = "plane-stress", interior = "grid", cell = 0.1 }}
         time.end = 0.1
         materials.soft = {{ density = 1100, neo_hookean = {{ young_modulus = 17e6, poisson_ratio = 0.3 }} }}
         [[bodies]]

@@ -35,7 +35,7 @@ fn pulled(degrees: f64, stretch: f64) -> [f64; 2] {
     let motion = format!("(1 - cos(2 * pi * min(t / {pull}, 1)))");
     let scene = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = "1 mm", basis = "cpdi", particles_per_side = 3 }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = "1 mm", basis = "cpdi", particles_per_side = 3 }}
         time.end = 0.12
         [materials.rubber]
         density = 1000

@@ -29,7 +29,7 @@ fn scene(second: &str, contact: &str) -> String {
     let height = 4.0 * h;
     format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = {h} }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
         time.end = 3
         materials.steel = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
         [[bodies]]

@@ -26,7 +26,7 @@ const BASES: [&str; 5] = ["gimp", "cpdi", "spline", "cubic", "linear"];
 fn run(basis: &str, transfer: &str, motion: &str, end: f64) -> ([Ledger; 2], ParticleSnapshot) {
     let scene = format!(
         r#"
-        space = {{ dimension = "plane-strain", cell = 0.2, basis = "{basis}" }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.2, basis = "{basis}" }}
         [time]
         end = 1
         {transfer}
@@ -115,7 +115,7 @@ fn apic_keeps_the_spin_about_any_axis() {
     for basis in ["gimp", "cpdi"] {
         let scene = format!(
             r#"
-            space = {{ dimension = "3d", cell = 0.4, basis = "{basis}" }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.4, basis = "{basis}" }}
             time = {{ end = 1, transfer = "apic" }}
             [materials.rubber]
             density = 1000

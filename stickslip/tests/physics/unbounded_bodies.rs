@@ -73,7 +73,7 @@ fn a_belt_without_end_drags_as_a_long_one() {
         start(&format!(
             r#"
             gravity = [0, -10]
-            space = {{ dimension = "plane-strain", cell = 0.1 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
             time = {{ end = 1, max_step = "0.5 ms" }}
             {RUBBER}
             [[bodies]]
@@ -102,7 +102,7 @@ fn a_face_that_rises_and_turns_does_what_that_of_a_block_does() {
     let scene = |punch: &str| {
         start(&format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.1 }}
+            space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
             time = {{ end = 1, max_step = "0.5 ms" }}
             {RUBBER}
             [[bodies]]
@@ -131,7 +131,7 @@ fn particles_follow_the_bodies_and_not_the_domain() {
     let count = |size: f64, x: f64| {
         let mut simulation = start(&format!(
             r#"
-            space = {{ dimension = "3d", cell = 0.1, domain = {{ min = [0, 0, -{size}], max = [{size}, {size}, {size}] }} }}
+            space = {{ dimension = "3d", interior = "grid", cell = 0.1, domain = {{ min = [0, 0, -{size}], max = [{size}, {size}, {size}] }} }}
             time.end = 1
             {RUBBER}
             [[bodies]]

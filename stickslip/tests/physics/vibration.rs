@@ -25,6 +25,7 @@ fn swing_left(basis: &str) -> f64 {
         gravity = [0, -0.5]
         [space]
         dimension = "plane-stress"
+        interior = "grid"
         cell = 0.005
         basis = "{basis}"
         domain = {{ min = [0, -0.1], max = [0.12, 0.1], x_min = "fixed" }}
@@ -70,7 +71,7 @@ fn rolled(cells: usize, basis: &str) -> f64 {
     let mut simulation = start(&format!(
         r#"
         gravity = [0, -10]
-        space = {{ dimension = "plane-strain", cell = "0.1 m / {cells}", basis = "{basis}" }}
+        space = {{ dimension = "plane-strain", interior = "grid", cell = "0.1 m / {cells}", basis = "{basis}" }}
         time.end = {end}
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
         [[bodies]]

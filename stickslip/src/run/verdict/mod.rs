@@ -456,6 +456,7 @@ mod tests {
     const SCENE: &str = r#"
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 1
 [time]
 end = 1
