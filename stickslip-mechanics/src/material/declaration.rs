@@ -91,6 +91,8 @@ pub struct ConstantUnit {
 
 /// Of a number without unit.
 pub const RATIO: ConstantUnit = ConstantUnit { powers: [0, 0, 0], symbol: "" };
+/// Of an angle.
+pub const ANGLE: ConstantUnit = ConstantUnit { powers: [0, 0, 0], symbol: "rad" };
 /// Of a pressure or a modulus.
 pub const PRESSURE: ConstantUnit = ConstantUnit { powers: [1, -1, -2], symbol: "Pa" };
 /// Of a time.
@@ -101,6 +103,10 @@ pub const RATE: ConstantUnit = ConstantUnit { powers: [0, 0, -1], symbol: "1/s" 
 pub const VISCOSITY: ConstantUnit = ConstantUnit { powers: [1, -1, -1], symbol: "Pa*s" };
 /// Of an energy per volume.
 pub const ENERGY_PER_VOLUME: ConstantUnit = ConstantUnit { powers: [1, -1, -2], symbol: "J/m^3" };
+/// Of a length.
+pub const LENGTH: ConstantUnit = ConstantUnit { powers: [0, 1, 0], symbol: "m" };
+/// Of a density.
+pub const DENSITY: ConstantUnit = ConstantUnit { powers: [1, -3, 0], symbol: "kg/m^3" };
 /// Of an energy per area.
 pub const ENERGY_PER_AREA: ConstantUnit = ConstantUnit { powers: [1, 0, -2], symbol: "J/m^2" };
 

@@ -50,16 +50,27 @@ impl<T: Number> Hypoelastic<T> {
     /// Cauchy stress at the end of the step [Pa].
     #[inline(always)]
     pub fn stress(&self, motion: &Motion<T>) -> Symmetric<T> {
-        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
-        let identity = Matrix::IDENTITY;
-        let two = T::of(2.0);
-        let h = (motion.increment - identity) * (motion.increment + identity).inverse() * two;
-        let strain = h.symmetric_part();
-        let half_spin = (h - h.transpose()) * T::of(0.25);
-        let rotation = (identity - half_spin).inverse() * (identity + half_spin);
-        let lame = k - T::of(2.0 / 3.0) * g;
-        motion.stress.rotated(&rotation) + Symmetric::isotropic(lame * strain.trace()) + strain * (two * g)
+        let (turned, strain) = turned_and_strained(motion);
+        self.strained(&turned, &strain)
     }
+
+    /// Stress that a strain adds to another [Pa].
+    #[inline(always)]
+    pub(super) fn strained(&self, stress: &Symmetric<T>, strain: &Symmetric<T>) -> Symmetric<T> {
+        let Isotropic { bulk_modulus: k, shear_modulus: g } = self.elastic;
+        let lame = k - T::of(2.0 / 3.0) * g;
+        *stress + Symmetric::isotropic(lame * strain.trace()) + *strain * (T::of(2.0) * g)
+    }
+}
+
+/// Q sigma Q^T [Pa] and D dt [-] of a step.
+#[inline(always)]
+pub(super) fn turned_and_strained<T: Number>(motion: &Motion<T>) -> (Symmetric<T>, Symmetric<T>) {
+    let identity = Matrix::IDENTITY;
+    let h = (motion.increment - identity) * (motion.increment + identity).inverse() * T::of(2.0);
+    let half_spin = (h - h.transpose()) * T::of(0.25);
+    let rotation = (identity - half_spin).inverse() * (identity + half_spin);
+    (motion.stress.rotated(&rotation), h.symmetric_part())
 }
 
 impl<T: Number> Law<T> for Hypoelastic<T> {

@@ -57,10 +57,10 @@ const MOST_HALVINGS: usize = 40;
 const CHANGE: f64 = 1e-7;
 
 impl Material<f64> {
-    /// Whether its stress is that of the step before, changed, whatever F is.
+    /// Whether its stress is that of the step before, changed, whatever F is: asked of a pressure, which sand bears, too.
     pub fn carries_stress(&self) -> bool {
         let modulus = self.elastic().p_wave_modulus();
-        self.carries(&Symmetric::isotropic(1e-9 * modulus))
+        self.carries(&Symmetric::isotropic(-1e-9 * modulus))
     }
 
     fn carries(&self, stress: &Symmetric<f64>) -> bool {

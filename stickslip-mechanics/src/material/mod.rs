@@ -12,11 +12,12 @@ mod initial;
 mod outside;
 mod plane_stress;
 mod principal;
+mod soil;
 
 pub use custom::{Custom, CustomLaw};
 pub use declaration::{
-    Absent, AllowedRange, BadConstants, Constant, ConstantUnit, Declared, Description, End, Form, Given,
-    Quantity,
+    ANGLE, Absent, AllowedRange, BadConstants, Constant, ConstantUnit, Declared, Description, End, Form,
+    Given, Quantity,
 };
 pub use elastic::Isotropic;
 pub use history::{AtRest, Entries, History, Keep, MOST_HISTORY, Recall, history_entries};
@@ -121,6 +122,10 @@ laws! { $
     von_mises VonMises;
     viscoelastic Viscoelastic;
     damage Damage;
+    drucker_prager DruckerPrager;
+    modified_cam_clay ModifiedCamClay;
+    mohr_coulomb MohrCoulomb;
+    mu_i MuI;
 }
 
 /// What a law is told of a particle's step.

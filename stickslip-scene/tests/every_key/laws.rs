@@ -326,6 +326,145 @@ pub const CASES: &[Cases] = &[
         scene: PLANE,
         with: &[(
             "materials.m",
+            "{ density = 1, drucker_prager = { bulk_modulus = 1e6, shear_modulus = 1e6, friction_angle = '30 deg' } }",
+        )],
+        keys: &[
+            (
+                "materials.m.drucker_prager",
+                "{ bulk_modulus = 2e6, shear_modulus = 1e6, friction_angle = '30 deg' }",
+            ),
+            ("materials.m.drucker_prager.bulk_modulus", "2e6"),
+            ("materials.m.drucker_prager.shear_modulus", "2e6"),
+            ("materials.m.drucker_prager.friction_angle", "20 deg"),
+            ("materials.m.drucker_prager.dilation_angle", "10 deg"),
+            ("materials.m.drucker_prager.cohesion", "1e3"),
+            ("materials.m.drucker_prager.tension_strength", "1e3"),
+            ("materials.m.drucker_prager.fit", "plane-strain"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, drucker_prager = { young_modulus = 1e6, poisson_ratio = 0.3, friction_angle = 0.5 } }",
+        )],
+        keys: &[
+            ("materials.m.drucker_prager.young_modulus", "2e6"),
+            ("materials.m.drucker_prager.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, drucker_prager = { p_wave_modulus = 1e6, poisson_ratio = 0.3, friction_angle = 0.5 } }",
+        )],
+        keys: &[("materials.m.drucker_prager.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, mohr_coulomb = { bulk_modulus = 1e6, shear_modulus = 1e6, friction_angle = '30 deg' } }",
+        )],
+        keys: &[
+            (
+                "materials.m.mohr_coulomb",
+                "{ bulk_modulus = 2e6, shear_modulus = 1e6, friction_angle = '30 deg' }",
+            ),
+            ("materials.m.mohr_coulomb.bulk_modulus", "2e6"),
+            ("materials.m.mohr_coulomb.shear_modulus", "2e6"),
+            ("materials.m.mohr_coulomb.friction_angle", "20 deg"),
+            ("materials.m.mohr_coulomb.dilation_angle", "10 deg"),
+            ("materials.m.mohr_coulomb.cohesion", "1e3"),
+            ("materials.m.mohr_coulomb.tension_strength", "1e3"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, mohr_coulomb = { young_modulus = 1e6, poisson_ratio = 0.3, friction_angle = 0.5 } }",
+        )],
+        keys: &[
+            ("materials.m.mohr_coulomb.young_modulus", "2e6"),
+            ("materials.m.mohr_coulomb.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, mohr_coulomb = { p_wave_modulus = 1e6, poisson_ratio = 0.3, friction_angle = 0.5 } }",
+        )],
+        keys: &[("materials.m.mohr_coulomb.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, modified_cam_clay = { critical_slope = 1, compression_slope = 0.2, swelling_slope = 0.04, poisson_ratio = 0.3, \
+             preconsolidation_pressure = 1e5, void_ratio = 1 } }",
+        )],
+        keys: &[
+            (
+                "materials.m.modified_cam_clay",
+                "{ critical_slope = 0.8, compression_slope = 0.2, swelling_slope = 0.04, poisson_ratio = 0.3, \
+             preconsolidation_pressure = 1e5, void_ratio = 1 }",
+            ),
+            ("materials.m.modified_cam_clay.critical_slope", "1.2"),
+            ("materials.m.modified_cam_clay.compression_slope", "0.3"),
+            ("materials.m.modified_cam_clay.swelling_slope", "0.05"),
+            ("materials.m.modified_cam_clay.poisson_ratio", "0.2"),
+            ("materials.m.modified_cam_clay.preconsolidation_pressure", "2e5"),
+            ("materials.m.modified_cam_clay.void_ratio", "1.5"),
+            ("materials.m.modified_cam_clay.tension_strength", "1e2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, mu_i = { bulk_modulus = 1e6, shear_modulus = 1e6, static_friction = 0.4, limiting_friction = 0.6, \
+             grain_diameter = 1e-3, grain_density = 2500 } }",
+        )],
+        keys: &[
+            (
+                "materials.m.mu_i",
+                "{ bulk_modulus = 2e6, shear_modulus = 1e6, static_friction = 0.4, limiting_friction = 0.6, \
+             grain_diameter = 1e-3, grain_density = 2500 }",
+            ),
+            ("materials.m.mu_i.bulk_modulus", "2e6"),
+            ("materials.m.mu_i.shear_modulus", "2e6"),
+            ("materials.m.mu_i.static_friction", "0.5"),
+            ("materials.m.mu_i.limiting_friction", "0.7"),
+            ("materials.m.mu_i.inertial_number", "0.3"),
+            ("materials.m.mu_i.grain_diameter", "2 mm"),
+            ("materials.m.mu_i.grain_density", "2000"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, mu_i = { young_modulus = 1e6, poisson_ratio = 0.3, static_friction = 0.4, limiting_friction = 0.6, \
+             grain_diameter = 1e-3, grain_density = 2500 } }",
+        )],
+        keys: &[("materials.m.mu_i.young_modulus", "2e6"), ("materials.m.mu_i.poisson_ratio", "0.2")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, mu_i = { p_wave_modulus = 1e6, poisson_ratio = 0.3, static_friction = 0.4, limiting_friction = 0.6, \
+             grain_diameter = 1e-3, grain_density = 2500 } }",
+        )],
+        keys: &[("materials.m.mu_i.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
             "{ density = 1, outside = { law = 'l', bulk_modulus = 1e6, shear_modulus = 1e6 } }",
         )],
         keys: &[

@@ -150,8 +150,8 @@ fn types_and_units() {
 fn laws_of_other_programs_have_an_answer() {
     let law = MINIMAL.lines().find(|line| line.starts_with("neo_hookean")).expect("a law");
     for (other, answer) in [
-        ("drucker_prager", "here: no law whose strength grows with the pressure"),
-        ("cam_clay", "here: no law that hardens as it is compacted"),
+        ("sand", "here: `drucker_prager` or `mohr_coulomb`, with friction_angle"),
+        ("cam_clay", "here: `modified_cam_clay`, which hardens as it is compacted"),
         ("JC", "here: `johnson_cook`, with yield_stress = A"),
         ("mooney", "here: `mooney_rivlin`, with c10"),
         ("elastic", "here: `hypoelastic`, Hooke's law"),

@@ -190,6 +190,25 @@ fn values_out_of_range() {
                  \"rankine\", by which nothing is crushed; \"modified-von-mises\" has one",
             ),
             (
+                "neo_hookean = { ",
+                "drucker_prager = { friction_angle = 30, ",
+                "10:37: materials.rubber.drucker_prager.friction_angle: found 30 (30 rad); allowed: at least 0 and below \
+                 1.5707963267948966 rad, a right angle; degrees have their unit",
+            ),
+            (
+                "neo_hookean = { ",
+                "mohr_coulomb = { friction_angle = \"30 kPa\", ",
+                "10:35: materials.rubber.mohr_coulomb.friction_angle: found \"30 kPa\", a pressure [Pa]; allowed: an angle \
+                 [rad], like \"30 deg\"",
+            ),
+            (
+                "neo_hookean = { ",
+                "drucker_prager = { friction_angle = \"20 deg\", dilation_angle = \"30 deg\", ",
+                "10:64: materials.rubber.drucker_prager.dilation_angle: found \"30 deg\" (0.5235987755982988 rad); \
+                 allowed: at most the friction_angle, 0.3490658503988659 rad, else flow would give energy instead of \
+                 taking it",
+            ),
+            (
                 "neo_hookean = ",
                 "#",
                 "8:12: materials.rubber: found no law; allowed: a law (LAWS), like neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }",

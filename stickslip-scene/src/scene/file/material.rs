@@ -1,10 +1,12 @@
 //! `[materials.NAME]`: density and a law from the list with its constants.
 
-use super::quantity::{Density, QuantityInput, Ratio, evaluate};
+use super::quantity::{Angle, Density, Measure, QuantityInput, Ratio, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
 use super::text::{Choice, Text, Word};
 use super::{Context, other_laws};
-use crate::material::{Constant, Form, Given, LAWS, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law};
+use crate::material::{
+    ANGLE, Constant, Form, Given, LAWS, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law,
+};
 use crate::outside::OUTSIDE;
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
@@ -121,9 +123,23 @@ fn constants(
     Ok(given)
 }
 
+/// Angles are numbers by their dimension, but are written with a unit.
+fn is_angle(wanted: &Wanted) -> bool {
+    wanted.unit.symbol == ANGLE.symbol
+}
+
+/// A value of it as one writes it.
+fn example_of(wanted: &Wanted) -> String {
+    match is_angle(wanted) {
+        true => Angle::example(),
+        false => Powers::from(wanted.unit.powers).example(),
+    }
+}
+
 fn number(node: &DocumentNode, wanted: &Wanted, context: &Context) -> Result<f64, Fault> {
     let powers = Powers::from(wanted.unit.powers);
     let allowed = match powers == Powers::NONE {
+        true if is_angle(wanted) => QuantityInput::<Angle>::wanted(),
         true => powers.name(),
         false => format!("{}, like \"{}\"", powers.name(), powers.example()),
     };
@@ -165,11 +181,10 @@ fn word(node: &DocumentNode, words: &[(&str, &str)], context: &Context) -> Resul
 fn schema_of(constant: &Constant) -> Schema {
     let mut schema = match &constant.form {
         Form::Number(wanted) => {
-            let example = Powers::from(wanted.unit.powers).example();
-            json_schema!({ "type": ["number", "string"], "examples": [example] })
+            json_schema!({ "type": ["number", "string"], "examples": [example_of(wanted)] })
         }
         Form::Pairs(pair, most) => {
-            let example = pair.map(|wanted| Powers::from(wanted.unit.powers).example());
+            let example = pair.map(|wanted| example_of(&wanted));
             json_schema!({
                 "type": "array",
                 "minItems": 1,

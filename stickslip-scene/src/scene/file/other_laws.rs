@@ -50,24 +50,24 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
          and thermal_exponent = m",
     ),
     (
-        &["druckerprager", "dpm", "mohrcoulomb", "sand", "soil", "granular", "mudi", "muirheology"],
-        "here: no law whose strength grows with the pressure; a law of your own in Python, chapter 15, or grains as \
-         bodies, [[packings]] with `friction`",
+        &["dpm", "mc", "tresca", "sand", "soil", "druckerpragercap"],
+        "here: `drucker_prager` or `mohr_coulomb`, with friction_angle, dilation_angle and cohesion; or grains as bodies, \
+         [[packings]] with `friction`",
     ),
     (
-        &[
-            "camclay",
-            "clay",
-            "modifiedcamclay",
-            "mcc",
-            "norsand",
-            "cap",
-            "crushablefoam",
-            "foam",
-            "snow",
-            "hypoplastic",
-        ],
-        "here: no law that hardens as it is compacted; a law of your own in Python, chapter 15",
+        &["granular", "mudi", "muirheology", "pouliquen", "granularflow", "mucoefficient"],
+        "here: `mu_i`, with static_friction and limiting_friction, or `drucker_prager` where friction has no rate; or \
+         grains as bodies, [[packings]] with `friction`",
+    ),
+    (
+        &["camclay", "clay", "mcc", "originalcamclay", "cap", "crushablefoam", "foam", "snow"],
+        "here: `modified_cam_clay`, which hardens as it is compacted, with critical_slope, compression_slope and \
+         swelling_slope",
+    ),
+    (
+        &["norsand", "hypoplastic", "hypoplasticity", "hardeningsoil"],
+        "here: `mohr_coulomb` has strength, `modified_cam_clay` hardening; what is between them is a law of your own in \
+         Python, chapter 15",
     ),
     (
         &[
@@ -157,14 +157,7 @@ mod tests {
 
     #[test]
     fn names_are_found_as_other_programs_write_them() {
-        for name in [
-            "drucker_prager",
-            "DruckerPrager",
-            "Mohr-Coulomb",
-            "cam_clay",
-            "Zerilli Armstrong",
-            "arruda_boyce",
-        ] {
+        for name in ["soil", "Cam Clay", "cam_clay", "Zerilli Armstrong", "arruda_boyce"] {
             assert!(answer(name).is_some_and(|text| text.starts_with("here: ")), "{name}");
         }
         assert_eq!(answer("rubber"), None);
