@@ -23,6 +23,10 @@ pub struct Interior<const D: usize> {
     pub forces: Vec<Vector<f64, D>>,
 }
 
+/// What of a field is left when it is fitted, and steps to it at most.
+const FITTED: f64 = 1e-13;
+const FITS: usize = 500;
+
 impl<const D: usize> Interior<D> {
     /// A body of this density, undeformed, with velocities by place [m/s].
     pub fn new(
@@ -44,24 +48,65 @@ impl<const D: usize> Interior<D> {
 
     /// Followers take the places and velocities of what they follow: x_s = sum e x_m.
     pub fn follow(&mut self) {
-        for (node, masters, shares) in self.form.followers.iter() {
-            let (mut place, mut velocity) = (Vector::ZERO, Vector::ZERO);
-            for (&master, &share) in masters.iter().zip(shares) {
-                place += self.places[master as usize] * share;
-                velocity += self.velocities[master as usize] * share;
-            }
-            (self.places[node], self.velocities[node]) = (place, velocity);
-        }
+        self.form.follow(&mut self.places);
+        self.form.follow(&mut self.velocities);
     }
 
     /// Gives the forces on followers to those that they follow: f_m += e f_s.
     pub fn gather_forces(&mut self) {
-        for (node, masters, shares) in self.form.followers.iter() {
-            let force = std::mem::replace(&mut self.forces[node], Vector::ZERO);
-            for (&master, &share) in masters.iter().zip(shares) {
-                self.forces[master as usize] += force * share;
+        self.form.gather(&mut self.forces);
+    }
+
+    /// Values at the nodes whose field is nearest to values of particles, each by its volume, by conjugate gradients:
+    ///
+    /// ```text
+    /// sum_p V_p N_I (sum_J N_J a_J - a_p) = 0        followers take the values of what they follow
+    /// ```
+    pub fn fitted(&self, values: &[Vector<f64, D>]) -> Vec<Vector<f64, D>> {
+        let form = &*self.form;
+        let weights: Vec<Weights<D>> = form.places.iter().map(|&place| form.weights(place)).collect();
+        let scattered = |values: &dyn Fn(usize) -> Vector<f64, D>| {
+            let mut sums = vec![Vector::<f64, D>::ZERO; form.nodes()];
+            for (p, (weights, volume)) in weights.iter().zip(&form.volumes).enumerate() {
+                let own = values(p) * *volume;
+                weights.each(|k, value, _| sums[weights.node + form.offsets[k] as usize] += own * value);
             }
+            form.gather(&mut sums);
+            sums
+        };
+        let shared = scattered(&|_| Vector([1.0; D]));
+        let scaled = |sums: &[Vector<f64, D>]| -> Vec<Vector<f64, D>> {
+            let scale = |(sum, share): (&Vector<f64, D>, &Vector<f64, D>)| {
+                if share[0].abs() > 0.0 { *sum * (1.0 / share[0].abs()) } else { Vector::ZERO }
+            };
+            sums.iter().zip(&shared).map(scale).collect()
+        };
+        let product = |a: &[Vector<f64, D>], b: &[Vector<f64, D>]| -> f64 {
+            a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+        };
+        let mut found = vec![Vector::<f64, D>::ZERO; form.nodes()];
+        let mut left = scattered(&|p| values[p]);
+        let mut next = scaled(&left);
+        let mut along = next.clone();
+        let mut size = product(&left, &next);
+        let enough = FITTED * FITTED * size;
+        for _ in 0..FITS {
+            if size <= enough {
+                break;
+            }
+            form.follow(&mut along);
+            let pushed = scattered(&|p| self.at(&weights[p], &along));
+            let step = size / product(&along, &pushed);
+            for node in 0..found.len() {
+                found[node] += along[node] * step;
+                left[node] -= pushed[node] * step;
+            }
+            next = scaled(&left);
+            let before = std::mem::replace(&mut size, product(&left, &next));
+            along.iter_mut().zip(&next).for_each(|(along, next)| *along = *next + *along * (size / before));
         }
+        form.follow(&mut found);
+        found
     }
 
     /// v += dt (f / M + g), and followers after it.

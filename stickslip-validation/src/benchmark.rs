@@ -216,7 +216,8 @@ impl Case {
 
     /// The scene's `[space]`: its dimension, the side of a cell [m] and the scheme's keys; further keys may follow.
     pub fn space(&self, dimension: &str, cell: f64) -> String {
-        format!("[space]\ndimension = \"{dimension}\"\ncell = {cell}\n{}", self.scheme.keys("space"))
+        let keys = self.scheme.keys("space");
+        format!("[space]\ndimension = \"{dimension}\"\ninterior = \"grid\"\ncell = {cell}\n{keys}")
     }
 
     /// The scene's `[time]`: its end [s] and the scheme's keys; further keys may follow.

@@ -193,7 +193,7 @@ fn probes_are_exact_for_what_is_linear_up_to_the_surface() {
             .collect();
         let text = format!(
             r#"
-            space = {{ dimension = "{dimension}", cell = 0.1 }}
+            space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1 }}
             time.end = 1e-9
             materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
             [[bodies]]

@@ -823,6 +823,7 @@ fn ranks_begin_from_another_run() {
         ("mechanism", &mechanism, &[at_rest, snapshot]),
         ("loaded", LOADED, &["", at_rest]),
         ("losing", LOSING, &[""]),
+        ("apart", APART, &["", at_rest, "at = 0.15\n"]),
     ];
     for (name, text, starts) in cases {
         let folder = tempfile::tempdir().unwrap();

@@ -120,8 +120,8 @@ class Scene:
 
         `gravity` is the acceleration of every body (D,) [m/s^2]; `parameters` are names of your own for numbers and
         words; `space` are further keys of `[space]`: `basis`, the shape functions between particles and grid ("gimp" by
-        default, "cpdi", "linear", "spline" or "cubic"), `interior`, where bodies that deform are computed ("grid" by
-        default, or "reference"), `precision` ("double" by default, or "single"), `particles_per_side` of a cell (2 by
+        default, "cpdi", "linear", "spline" or "cubic"), `interior`, where bodies that deform are computed
+        ("reference" or "grid"; by default by what they are made of), `precision` ("double" by default, or "single"), `particles_per_side` of a cell (2 by
         default).
         """
         top = {"title": title, "about": about, "gravity": gravity, "parameters": parameters}
@@ -185,7 +185,9 @@ class Scene:
 
         Laws are `neo_hookean` for rubber and whatever else is elastic at large strains, `hypoelastic` for small strains
         and large rotations, `von_mises` for metals and clay (`yield_stress`, `hardening_modulus`), `viscoelastic` for
-        polymers and gels, `damage` for rock, concrete and glass. Elastic constants are any two of `bulk_modulus`,
+        polymers and gels, `damage` for rock, concrete and glass, `hencky`, `mooney_rivlin` and `ogden` for rubber,
+        `fluid` for what flows, `johnson_cook` and `armstrong_frederick` for metals, `drucker_prager`, `mohr_coulomb`,
+        `modified_cam_clay` and `mu_i` for soils and grains. Elastic constants are any two of `bulk_modulus`,
         `shear_modulus`, `young_modulus`, `poisson_ratio` and `p_wave_modulus`. `ss.keys("materials.von_mises")` lists
         what one takes. A law of your own is `outside=dict(law=function, bulk_modulus=..., shear_modulus=...)`, see
         `Law`.

@@ -90,8 +90,18 @@ fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
     };
     let (mut moment, mut whole) = ([0.0; 3], 0.0);
     let density = scene.materials[body.material].density;
-    let all = geometry::sites(&body.shape, &lattice, scene.arrangement(body))
-        .expect("other shapes are refused before");
+    // Shapes without bounds are refused before.
+    let Some(all) = geometry::sites(&body.shape, &lattice, scene.arrangement(body)) else {
+        return Err(match bounds.is_empty() {
+            true => no_particles(scene, i, &bounds),
+            false => Problem {
+                key: format!("bodies[{i}].shape"),
+                found: format!("`{}`, over which no grid of its own fits", body.name),
+                allowed: "a shape that is two cells thick and more; or interior = \"grid\"".to_string(),
+                help: None,
+            },
+        });
+    };
     for ParticleSite { position, volume, half_width } in all {
         extent.particles += 1;
         extent.mass += volume * density;

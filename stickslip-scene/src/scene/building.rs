@@ -314,6 +314,7 @@ mod tests {
 gravity = [0, -9.81]
 [space]
 dimension = "plane-strain"
+interior = "grid"
 cell = 0.1
 domain = { min = [-1, -1], max = [4, 4] }
 [time]

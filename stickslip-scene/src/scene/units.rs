@@ -241,7 +241,8 @@ mod tests {
     #[test]
     fn dimensions_are_named() {
         assert_eq!(Powers::from([1, -1, -2]).name(), "a pressure [Pa]");
-        assert_eq!(Powers::from([1, -1, -1]).name(), "a quantity in kg/m/s");
+        assert_eq!(Powers::from([1, -1, -1]).name(), "a viscosity [Pa*s]");
+        assert_eq!(Powers::from([1, -2, -1]).name(), "a quantity in kg/m^2/s");
         assert_eq!(Powers::from([0, 0, -2]).symbol(), "1/s^2");
     }
 }

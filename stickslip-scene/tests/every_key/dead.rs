@@ -63,7 +63,7 @@ fn keys_that_need_another_beside_them_are_refused_without() {
         ),
         (
             &[("contact", "[{ friction = 0.5, friction_memory_length = 1 }]")],
-            "contact[0].friction_memory_length: found 1; allowed: a `friction_memory_speed` beside it",
+            "contact[0].friction_memory_length: found 1; allowed: 0, or a `friction_memory_speed` beside it",
         ),
         (
             &[("contact", "[{ friction = 0.5, friction_memory_speed = 1 }]")],

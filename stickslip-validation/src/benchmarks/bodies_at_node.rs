@@ -92,7 +92,7 @@ fn scene(case: &Case, (dimension, bodies): (&str, usize), friction: f64, random:
     let jitter = if bodies == 2 { 0.0 } else { 0.2 * share };
     let cuts: Vec<f64> = (0..bodies).map(|i| turn + share * i as f64 + jitter * random.next()).collect();
     let mut text = format!(
-        "title = \"Bodies that meet at a node\"\nspace = {{ dimension = \"{dimension}\", cell = {h} }}\ntime = {{ \
+        "title = \"Bodies that meet at a node\"\nspace = {{ dimension = \"{dimension}\", interior = \"grid\", cell = {h} }}\ntime = {{ \
 end = 100, stress_update = \"last\" }}\n"
     );
     for i in 0..bodies {

@@ -109,7 +109,7 @@ fn drop(
         format!(
             r#"title = "Glued parts equal the whole"
 gravity = {gravity}
-space = {{ dimension = "{dimension}", cell = {h} }}
+space = {{ dimension = "{dimension}", interior = "grid", cell = {h} }}
 time.end = 0.3
 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
 {bodies}

@@ -16,7 +16,7 @@ fn balls(dimension: &str, precision: &str) -> String {
     let v = |x: &str| if dimension == "3d" { format!("[{x}, 0]") } else { format!("[{x}]") };
     format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = 0.1, precision = "{precision}" }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1, precision = "{precision}" }}
         time.end = 1
         [materials.metal]
         density = 1000

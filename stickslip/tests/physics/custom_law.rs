@@ -70,7 +70,7 @@ fn scene_of(dimension: &str) -> Scene {
     let v = |x: &str| if space { format!("[{x}, 0]") } else { format!("[{x}]") };
     let text = format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = 0.1, domain = {{ min = {}, max = {}, y_min = "fixed" }} }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1, domain = {{ min = {}, max = {}, y_min = "fixed" }} }}
         time.end = 1
         materials.rubber = {{ density = 1000, neo_hookean = {{ bulk_modulus = 6e5, shear_modulus = 3e5 }} }}
         [[bodies]]

@@ -28,7 +28,7 @@ fn torn(cells: usize, dimension: &str) -> [f64; 3] {
     let pull = format!("{OPENING} / {end} * (1 - cos(2 * pi * t / {end}))");
     let mut simulation = start(&format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = {h} }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = {h} }}
         time.end = {end}
         materials.glass = {{ density = 1, damage = {{ young_modulus = 1, poisson_ratio = 0, tensile_strength = {STRENGTH}, fracture_energy = {ENERGY} }} }}
         [[bodies]]

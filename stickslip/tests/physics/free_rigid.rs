@@ -401,7 +401,7 @@ fn results_depend_on_no_thread_and_on_no_pause() {
 fn rigid_scene(dimension: &str, gravity: &str, [end, step]: [f64; 2], rest: &str) -> String {
     format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = 0.1 }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1 }}
         gravity = {gravity}
         time = {{ end = {end}, max_step = {step} }}
         {GEL}

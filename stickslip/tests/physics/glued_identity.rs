@@ -21,7 +21,7 @@ fn body(name: &str, min: &str, max: &str, motion: &str) -> String {
 fn scene(dimension: &str, update: &str, bodies: &str) -> String {
     format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = 0.1 }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1 }}
         time = {{ end = 1, stress_update = "{update}" }}
         gravity = {}
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}

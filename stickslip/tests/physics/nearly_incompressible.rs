@@ -72,7 +72,7 @@ fn collide(volume_change: &str, (dimension, update, end): (&str, &str, f64)) -> 
     let spin = if dimension == "3d" { "[0, 0, 0.2]" } else { "0.2" };
     let mut simulation = start(&format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = 0.1 }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1 }}
         time = {{ end = 100, stress_update = "{update}" }}
         [materials.rubber]
         density = 1

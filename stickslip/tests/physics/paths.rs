@@ -22,7 +22,7 @@ fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String 
     format!(
         r#"
         gravity = {}
-        space = {{ dimension = "{dimension}", cell = 0.1, basis = "{basis}", precision = "{precision}", domain = {{ min = {}, max = {}, x_min = "symmetry", y_max = "fixed" }} }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1, basis = "{basis}", precision = "{precision}", domain = {{ min = {}, max = {}, x_min = "symmetry", y_max = "fixed" }} }}
         time = {{ end = 1, stress_update = "{update}", pic_share = 0.02 }}
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
         materials.rock = {{ density = 2000, hypoelastic = {{ young_modulus = 3e5, poisson_ratio = 0.2 }} }}

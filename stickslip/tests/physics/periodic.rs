@@ -43,6 +43,7 @@ impl Tube<'_> {
             r#"
             [space]
             dimension = "{}"
+            interior = "grid"
             cell = 0.1
             domain = {{ min = {}, max = {}{faces} }}
             {}

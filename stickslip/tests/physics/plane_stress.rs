@@ -38,6 +38,7 @@ fn wave(dimension: &str, law: &str, held: bool) -> (f64, f64) {
     let scene = format!(
         r#"
         space.dimension = "{dimension}"
+        space.interior = "grid"
         space.cell = {CELL}
         space.domain = {{ min = [-0.1, {low}], max = [1.1, {high}], {faces} }}
         time.end = 1
@@ -102,7 +103,7 @@ fn a_pressed_bar_obeys_hooke_with_e_and_nu() {
         let scene = format!(
             r#"
             space.dimension = "plane-stress"
-            interior = "grid"
+            space.interior = "grid"
             space.cell = 0.05
             space.domain = {{ min = [0, 0], max = [1.5, 0.5], x_min = "symmetry", y_min = "symmetry" }}
             time = {{ end = 40, pic_share = 0.02 }}

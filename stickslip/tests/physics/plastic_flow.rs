@@ -24,7 +24,7 @@ fn press(dimension: &str, cell: f64, constraint: f64) {
     let (end, ramp) = (60.0, 50.0);
     let mut simulation = start(&format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = {cell}, basis = "gimp", domain = {{ min = {}, max = {}, {mirrors}, y_min = "symmetry" }} }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = {cell}, basis = "gimp", domain = {{ min = {}, max = {}, {mirrors}, y_min = "symmetry" }} }}
         time.end = {end}
         materials.metal = {{ density = 1, von_mises = {{ young_modulus = 1, poisson_ratio = 0.3, yield_stress = {YIELD}, hardening_modulus = {HARDENING} }} }}
         [[bodies]]

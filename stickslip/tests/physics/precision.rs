@@ -12,7 +12,7 @@ fn scene(dimension: &str, precision: &str, basis: &str) -> String {
     let z = if dimension == "3d" { [", 0", ", 0.05"] } else { ["", ""] };
     format!(
         r#"
-        space = {{ dimension = "{dimension}", cell = 0.05, precision = "{precision}", basis = "{basis}" }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.05, precision = "{precision}", basis = "{basis}" }}
         time.end = 1
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}
         [[bodies]]

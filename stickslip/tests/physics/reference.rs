@@ -252,3 +252,23 @@ fn a_ball_bounces_off_a_slanted_plane() {
     println!("restitution {restitution}, energy {left}");
     assert!(restitution > 0.985 && (left - 1.0).abs() < 0.005, "{restitution} {left}");
 }
+
+/// Velocities that are written to particles are those of the body, if its functions have them: it turns as they do.
+#[test]
+fn velocities_that_are_written_are_those_of_the_nodes() {
+    let mut simulation = start(&scene(0.125, &disk("a", [0.3, 0.1], [0.0, 0.0])));
+    let spin = 0.7;
+    let turn = |x: [f64; 3]| [2.0 - spin * (x[1] - 0.1), 1.0 + spin * (x[0] - 0.3)];
+    let values: Vec<f64> = simulation.snapshot().position.iter().flat_map(|&x| turn(x)).collect();
+    simulation.write(0, "velocity", &values).unwrap();
+    let body = &simulation.bodies()[0];
+    assert!((body.spin[2] - spin).abs() < 1e-9, "{body:?}");
+    assert!((body.velocity[0] - 2.0).abs() < 1e-9 && (body.velocity[1] - 1.0).abs() < 1e-9, "{body:?}");
+    let work = body.kinetic;
+    take_steps(&mut *simulation, 20);
+    let ledger = simulation.ledger();
+    assert!((ledger.external_work / work - 1.0).abs() < 1e-9, "{} of {work}", ledger.external_work);
+    assert!((energy(&*simulation) / work - 1.0).abs() < 1e-3, "{} of {work}", energy(&*simulation));
+    let mass = vec![1.0; simulation.snapshot().position.len()];
+    assert!(simulation.write(0, "mass", &mass).is_err());
+}

@@ -23,7 +23,7 @@ fn on_floor(dimension: &str, [gravity, end]: [&str; 2], [floor, bodies, contact]
     format!(
         r#"
         gravity = {gravity}
-        space = {{ dimension = "{dimension}", cell = 0.02 }}
+        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.02 }}
         time = {{ end = {end}, max_step = 1e-3 }}
         materials.stone = {{ density = 1000, neo_hookean = {{ young_modulus = 1e7, poisson_ratio = 0.3 }} }}
         contact = [{{ {contact} }}]

@@ -41,7 +41,7 @@ fn a_ball_rolls_on_a_half_space_as_on_a_block() {
             start(&format!(
                 r#"
                 gravity = [7, -7{zero}]
-                space = {{ dimension = "{dimension}", cell = 0.2 }}
+                space = {{ dimension = "{dimension}", interior = "grid", cell = 0.2 }}
                 time.end = 1
                 {RUBBER}
                 [[bodies]]

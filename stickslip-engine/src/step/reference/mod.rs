@@ -22,7 +22,7 @@ use crate::body::{Body, Particle, Totals};
 use crate::contact::Rules;
 use crate::door::{RestoreError, SavedState, StepError};
 use crate::geometry::Shape;
-use crate::geometry::form::{Form, NoForm, Weights};
+use crate::geometry::form::{Form, NoForm};
 use crate::grid::Disjoint;
 use crate::lanes::{Laned, Processor};
 use crate::load::LoadSums;
@@ -362,12 +362,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let nodes = saved.nodes.iter().find(|nodes| nodes.body == there);
             match (self.reference_of(number), nodes) {
                 (None, None) => {}
-                (Some(_), None) if saved.of_snapshot => {
-                    return off(
-                        "has interior = \"reference\" in the scene, which begins from checkpoints only, \
-                                not from snapshots: interior = \"grid\" begins from both",
-                    );
-                }
+                (Some(place), None) if saved.of_snapshot => carried.fitted.push(place),
                 (Some(_), None) => {
                     return off("has interior = \"reference\" in the scene, and \"grid\" in it");
                 }
@@ -408,37 +403,57 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         for place in 0..self.settings.references.len() {
             self.order_by_number(self.settings.references[place].body);
         }
+        self.fit_nodes(&carried.fitted);
     }
 
-    /// Gives a body the velocities of its particles [m/s], as nearly as its functions can: what is left is shared out
-    /// by mass, again and again.
+    /// Gives a body the velocities of its particles [m/s], as nearly as its functions can.
     pub(super) fn put_velocities(&mut self, place: usize, values: &[f64]) {
-        let wanted: Vec<Vector<f64, D>> = vectors(values);
         let body = self.settings.references[place].body;
         let nodes = &mut self.state.references.nodes[place];
-        let form = nodes.form.clone();
-        let weights: Vec<Weights<D>> = form.places.iter().map(|&place| form.weights(place)).collect();
-        let mut shared = vec![0.0; nodes.masses.len()];
-        for (weights, volume) in weights.iter().zip(&form.volumes) {
-            weights.each(|k, value, _| shared[weights.node + form.offsets[k] as usize] += value * volume);
-        }
-        nodes.velocities.fill(Vector::ZERO);
-        for _ in 0..SWEEPS {
-            let mut more = vec![Vector::<f64, D>::ZERO; shared.len()];
-            for ((weights, volume), wanted) in weights.iter().zip(&form.volumes).zip(&wanted) {
-                let left = (*wanted - nodes.at(weights, &nodes.velocities)) * *volume;
-                weights.each(|k, value, _| more[weights.node + form.offsets[k] as usize] += left * value);
-            }
-            for node in (0..shared.len()).filter(|&node| nodes.masses[node] > 0.0) {
-                nodes.velocities[node] += more[node] * (1.0 / shared[node]);
-            }
-            nodes.follow();
-        }
+        nodes.velocities = nodes.fitted(&vectors(values));
         let particles = &mut self.state.bodies[body].particles;
-        for (i, weights) in weights.iter().enumerate() {
-            let velocity = nodes.at(weights, &nodes.velocities);
+        for (i, &start) in nodes.form.places.iter().enumerate() {
+            let velocity = nodes.at(&nodes.form.weights(start), &nodes.velocities);
             let particle = particles.get(i);
             particles.set(i, &Particle { velocity: Vector::from_fn(|k| T::of(velocity[k])), ..particle });
+        }
+    }
+
+    /// Finds the nodes of bodies whose particles alone are known, where these are here.
+    fn fit_nodes(&mut self, places: &[usize]) {
+        for &place in places {
+            let particles = &self.state.bodies[self.settings.references[place].body].particles;
+            if particles.is_empty() {
+                continue;
+            }
+            let nodes = &mut self.state.references.nodes[place];
+            let of = |what: &dyn Fn(&Particle<T, D>) -> Vector<T, D>| -> Vec<Vector<f64, D>> {
+                particles.iter().map(|p| Vector::from_fn(|k| what(&p)[k].f64())).collect()
+            };
+            let ways =
+                of(&|p| p.position).into_iter().zip(&nodes.form.places).map(|(now, start)| now - *start);
+            let moved = nodes.fitted(&ways.collect::<Vec<_>>());
+            nodes.places = (0..moved.len()).map(|node| nodes.form.node_place(node) + moved[node]).collect();
+            nodes.velocities = nodes.fitted(&of(&|p| p.velocity));
+            nodes.follow();
+        }
+        if let Some(among) = &self.among {
+            let nodes = &self.state.references.nodes;
+            let here = |place: &&usize| {
+                !self.state.bodies[self.settings.references[**place].body].particles.is_empty()
+            };
+            let own = places.iter().filter(here);
+            let own: Vec<(usize, Vec<f64>, Vec<f64>)> = own
+                .map(|&place| (place, flat(&nodes[place].places), flat(&nodes[place].velocities)))
+                .collect();
+            for (place, found, velocities) in among.gathered(&own).into_iter().flatten() {
+                let nodes = &mut self.state.references.nodes[place];
+                (nodes.places, nodes.velocities) = (vectors(&found), vectors(&velocities));
+            }
+        }
+        if !places.is_empty() {
+            // Forces of the stress that this is.
+            self.strain_references(T::ZERO);
         }
     }
 
@@ -470,10 +485,9 @@ impl SavedNodes {
 pub struct CarriedNodes {
     nodes: Vec<(usize, SavedNodes)>,
     touching: Vec<Memory>,
+    /// Those of which the other run has particles alone.
+    fitted: Vec<usize>,
 }
-
-/// Sweeps by which nodes take the velocities of particles.
-const SWEEPS: usize = 50;
 
 fn flat<const D: usize>(all: &[Vector<f64, D>]) -> Vec<f64> {
     all.iter().flat_map(|v| v.0).collect()

@@ -162,6 +162,24 @@ impl<const D: usize> Form<D> {
         Weights { node: self.node(at), axes }
     }
 
+    /// Followers take the values of what they follow: a_s = sum e a_m.
+    pub fn follow(&self, values: &mut [Vector<f64, D>]) {
+        for (node, masters, shares) in self.followers.iter() {
+            let all = masters.iter().zip(shares);
+            values[node] = all.fold(Vector::ZERO, |sum, (&m, &share)| sum + values[m as usize] * share);
+        }
+    }
+
+    /// What acts on followers acts on those that they follow: f_m += e f_s.
+    pub fn gather(&self, values: &mut [Vector<f64, D>]) {
+        for (node, masters, shares) in self.followers.iter() {
+            let own = std::mem::replace(&mut values[node], Vector::ZERO);
+            for (&master, &share) in masters.iter().zip(shares) {
+                values[master as usize] += own * share;
+            }
+        }
+    }
+
     /// Parts of cells that lie in the shape, [`PER_SIDE`] along each axis; their volumes sum to that of the shape.
     fn fill(&mut self, shape: &Shape) {
         let side = self.cell / PER_SIDE as f64;

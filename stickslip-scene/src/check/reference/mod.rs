@@ -11,9 +11,12 @@ use super::bodies::smallest_extent;
 use super::loads;
 use super::settings::is_over_arrays;
 use super::table::short;
+use crate::geometry::form::Form;
 use crate::geometry::{Curved, Shape};
 use crate::material::Material;
-use crate::scene::{Action, Body, FACES, Face, Interior, NamedMaterial, Problem, Scene, VolumeChange};
+use crate::scene::{
+    Action, Body, FACES, Face, Interior, Leaving, NamedMaterial, Problem, Scene, VolumeChange,
+};
 
 /// What a body may not have, by its number.
 const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] = &[
@@ -30,7 +33,7 @@ const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] = &[
 
 /// What a scene may not have in which there is one, by the number of the first.
 const OF_SCENE: &[fn(&Scene, usize) -> Option<Problem>] =
-    &[periodic_faces, bulk_viscosity, relaxation, temperatures, springs, joints];
+    &[periodic_faces, removal, bulk_viscosity, relaxation, temperatures, springs, joints];
 
 /// Particles along each side of a cell.
 const PER_SIDE: f64 = 2.0;
@@ -70,14 +73,47 @@ pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
         let law = material(scene, body).law.name();
         Some(format!("`{}` is of a material that may flow or part, `{law}`", scene.bodies[body].name))
     };
+    // A body may come to a face that holds it, and pass one through which it leaves.
+    let face = || {
+        let domain = scene.domain.as_ref()?;
+        let faces = (0..scene.dimension.axes()).flat_map(|k| domain.faces[k].into_iter().zip(FACES[k]));
+        let mut held = faces.filter(|(face, _)| *face != Face::Open);
+        let (_, name) = held.next()?;
+        Some(format!("the domain has a face that is not open, `{name}`"))
+    };
     let because = (wanted.map(|key| format!("`{key}` is written")))
-        .or_else(|| scene.start.is_some().then(|| "it begins from another run".to_string()))
         .or_else(inelastic)
-        .or_else(|| check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found)));
+        .or_else(face)
+        .or_else(|| check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found)))
+        .or_else(|| no_grid(scene));
     if let Some(why) = because {
         scene.discretization.interior = Interior::Grid;
         scene.discretization.because = Some(why);
     }
+}
+
+/// A shape over which no grid of its own fits: balls and boxes are judged by their sides.
+fn no_grid(scene: &Scene) -> Option<String> {
+    let is_simple = |shape: &Shape| matches!(shape, Shape::Ball { .. } | Shape::Box { .. });
+    let cell = scene.discretization.cell;
+    let found = |body: usize| {
+        let shape = &scene.bodies[body].shape;
+        if !is_reference(scene, body)
+            || is_simple(shape)
+            || matches!(shape, Shape::Curved(Curved::PointCloud(_)))
+        {
+            return None;
+        }
+        let fails = match scene.dimension.axes() {
+            2 => Form::<2>::new(shape, cell).is_err(),
+            _ => Form::<3>::new(shape, cell).is_err(),
+        };
+        let name = &scene.bodies[body].name;
+        fails.then(|| {
+            format!("no grid of its own fits over `{name}`, as over what is less than two cells thick")
+        })
+    };
+    (0..scene.bodies.len()).find_map(found)
 }
 
 /// Whether a material is elastic and keeps its shape.
@@ -203,6 +239,12 @@ fn periodic_faces(scene: &Scene, body: usize) -> Option<Problem> {
     let axis = (0..scene.dimension.axes()).find(|&k| domain.is_periodic(k))?;
     let key = format!("space.domain.{}", FACES[axis][0]);
     Some(problem(scene, body, key, "\"periodic\"", "other faces"))
+}
+
+fn removal(scene: &Scene, body: usize) -> Option<Problem> {
+    let removes = scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove);
+    let key = "space.domain.leaving".to_string();
+    removes.then(|| problem(scene, body, key, "\"remove\"", "\"stop\", the default"))
 }
 
 fn bulk_viscosity(scene: &Scene, body: usize) -> Option<Problem> {

@@ -14,6 +14,7 @@ const BODIES: &str = r#"
 [space]
 dimension = "plane-strain"
 cell = 0.1
+interior = "grid"
 [time]
 end = 1
 [materials.rubber]
@@ -156,11 +157,12 @@ fn what_a_body_on_the_grid_may_have_is_refused() {
 
 #[test]
 fn refusals_point_to_the_line() {
-    let text = format!("{APART}\n{BODIES}").replace("interior =", "particles_per_side = 3\ninterior =");
+    let text = format!("{APART}\n{BODIES}")
+        .replace("interior = \"reference\"", "particles_per_side = 3\ninterior = \"reference\"");
     let loaded = crate::scene::parse("a.toml", &text, &[]).expect("a scene");
     let error = loaded.source.locate(problems(&loaded.scene).expect_err("3 a side")).to_string();
     assert!(
-        error.starts_with("a.toml:16:22: bodies[0].particles_per_side: found 3, where `a` has "),
+        error.starts_with("a.toml:17:22: bodies[0].particles_per_side: found 3, where `a` has "),
         "{error}"
     );
 }
@@ -333,4 +335,46 @@ fn many_grains_take_no_longer_than_few() {
     assert_eq!(check(&scene), Ok(()));
     scene.contact.push(ContactRule { viscosity: 1.0, ..ContactRule::default() });
     assert_eq!(check(&scene).expect_err("viscosity").key, "contact[0].viscosity");
+}
+
+/// Elastic bodies are on grids of their own where the scene does not say where they are, and nothing speaks against it.
+#[test]
+fn scenes_that_say_nothing_have_what_fits_their_bodies() {
+    let chosen = |bodies: &str| {
+        let text = format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.1 }}
+            materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            materials.clay = {{ density = 1, von_mises = {{ young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 }} }}
+            materials.water = {{ density = 1, neo_hookean = {{ bulk_modulus = 1e6, shear_modulus = 0 }} }}
+            {bodies}
+            "#
+        );
+        let parsed = crate::scene::parse("a.toml", &text, &[]);
+        let scene = parsed.unwrap_or_else(|error| panic!("{error}\n{text}")).scene;
+        (scene.interior(0), scene.discretization.because)
+    };
+    let disk = |name: &str, material: &str, more: &str| {
+        format!(
+            "[[bodies]]\nname = '{name}'\nmaterial = '{material}'\nshape.ball = {{ center = [0, 0], radius = 1 }}\n{more}\n"
+        )
+    };
+    let time = "time.end = 1";
+    let own = chosen(&format!("{time}\n{}", disk("a", "rubber", "")));
+    assert_eq!(own, (Interior::Reference, None));
+    let rigid = disk("b", "clay", "rigid = {}");
+    assert_eq!(chosen(&format!("{time}\n{}{rigid}", disk("a", "rubber", ""))).0, Interior::Reference);
+    for (top, body, why) in [
+        (time, disk("a", "clay", ""), "`a` is of a material that may flow or part, `von_mises`"),
+        (time, disk("a", "water", ""), "`a` is of a material that may flow or part, `neo_hookean`"),
+        ("time = { end = 1, transfer = 'apic' }", disk("a", "rubber", ""), "`time.transfer` is written"),
+        (
+            "time = { end = 1, relax = {} }",
+            disk("a", "rubber", ""),
+            "`time.relax` is dynamic relaxation, where `a` has interior = \"reference\"",
+        ),
+    ] {
+        let (interior, because) = chosen(&format!("{top}\n{body}"));
+        assert_eq!((interior, because.as_deref()), (Interior::Grid, Some(why)));
+    }
 }
