@@ -12,6 +12,7 @@
 
 use super::Engine;
 use super::loads::{NOWHERE, find, mirror};
+use super::reference::center_of;
 use crate::exact::ExactSum;
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -29,36 +30,38 @@ pub struct SpringRoom<T, const D: usize> {
     /// Place in memory of the particles of each body at which springs end, by number.
     places: Vec<Vec<u32>>,
     springs: Vec<SpringStep>,
+    /// Of each spring what it did, if it ends at bodies on grids of their own.
+    pub own: Vec<Option<SpringStep>>,
     /// Nodes of the parts of all springs, with g_i.
     nodes: Vec<PartNodes<T, D>>,
 }
 
 /// Where a spring is.
-struct Line {
+pub(super) struct Line {
     /// Of its two parts [m].
-    centers: [[f64; 3]; 2],
+    pub centers: [[f64; 3]; 2],
     /// From the second to the first.
-    direction: Vector<f64, 3>,
+    pub direction: Vector<f64, 3>,
 }
 
 /// What a spring does in a step.
 #[derive(Clone, Copy, Debug, Default)]
-struct SpringStep {
+pub struct SpringStep {
     /// e, from the second part to the first.
-    direction: [f64; 3],
+    pub direction: [f64; 3],
     /// f [N]
-    force: f64,
+    pub force: f64,
     /// k as the step feels it [N/m].
-    stiffness: f64,
+    pub stiffness: f64,
     /// How far prescribed ends move along e in the step: by so much the length grows with no work on what is free [m].
-    driven: f64,
+    pub driven: f64,
     /// By how much the length has grown since the step began where the force is taken [m].
-    gone: f64,
+    pub gone: f64,
 }
 
 impl<T, const D: usize> Default for SpringRoom<T, D> {
     fn default() -> Self {
-        SpringRoom { places: Vec::new(), springs: Vec::new(), nodes: Vec::new() }
+        SpringRoom { places: Vec::new(), springs: Vec::new(), own: Vec::new(), nodes: Vec::new() }
     }
 }
 
@@ -79,6 +82,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         room.springs.clear();
         let of_springs = centers.into_iter().zip(directions).zip(room.nodes.as_chunks().0).enumerate();
         for (number, ((centers, direction), nodes)) in of_springs {
+            if let Some(Some(step)) = room.own.get(number) {
+                room.springs.push(*step);
+                continue;
+            }
             let line = centers.zip(direction).map(|(centers, direction)| Line { centers, direction });
             let step = line.map(|line| self.pull(number, (dt, ahead), (line, nodes)));
             room.springs.push(step.unwrap_or_default());
@@ -264,7 +271,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let bodies = &self.state.bodies;
         // Where the points of each end are.
         let mut found: Vec<([u32; 2], [f64; 3])> = Vec::new();
-        for (end, e) in self.ends().zip(0..).filter(|(end, _)| !bodies[end.body].is_rigid()) {
+        let on_nodes =
+            |end: &PartPoints| !bodies[end.body].is_rigid() && self.reference_of(end.body).is_none();
+        for (end, e) in self.ends().zip(0..).filter(|(end, _)| on_nodes(end)) {
             for (point, number) in end.points.iter().zip(0..) {
                 let place = places[end.body][point.particle as usize];
                 if place != NOWHERE {
@@ -282,6 +291,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             if let Some(motion) = &bodies[end.body].motion {
                 return Some(motion.pose().now(end.center));
             }
+            if let Some(place) = self.reference_of(end.body) {
+                let spring = &self.settings.springs[e as usize / 2];
+                return Some(center_of(spring, e as usize % 2, &self.state.references.nodes[place]));
+            }
             let count = rest.iter().take_while(|([of, _], _)| *of == e).count();
             let points = rest.split_off(..count).expect("so many are left");
             let share = |([_, number], place): &([u32; 2], [f64; 3])| {
@@ -295,12 +308,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 }
 
 /// Direction from the second part of a spring to the first.
-fn direction(centers: &Option<[[f64; 3]; 2]>) -> Option<Vector<f64, 3>> {
+pub(super) fn direction(centers: &Option<[[f64; 3]; 2]>) -> Option<Vector<f64, 3>> {
     centers.and_then(|[a, b]| (Vector(a) - Vector(b)).direction())
 }
 
 /// Where a spring pushes a part in its direction.
-fn along(direction: Vector<f64, 3>, side: usize) -> Vector<f64, 3> {
+pub(super) fn along(direction: Vector<f64, 3>, side: usize) -> Vector<f64, 3> {
     direction * if side == 0 { 1.0 } else { -1.0 }
 }
 

@@ -272,3 +272,63 @@ fn velocities_that_are_written_are_those_of_the_nodes() {
     let mass = vec![1.0; simulation.snapshot().position.len()];
     assert!(simulation.write(0, "mass", &mass).is_err());
 }
+
+/// Two disks on a spring swing with the frequency of two masses, keep their momentum and their energy.
+#[test]
+fn disks_on_a_spring_swing_as_two_masses() {
+    let bodies = disk("a", [-2.0, 0.0], [0.1, 0.0]) + &disk("b", [2.0, 0.0], [-0.1, 0.0]);
+    let spring = "[[springs]]\nname = 's'\nfrom = { body = 'a', on = 'x_max' }\nto = { body = 'b', on = 'x_min' }\n\
+                  stiffness = 2e3\n";
+    let mut simulation = start(&scene(0.25, &format!("{bodies}{spring}")));
+    let before = energy(&*simulation);
+    let mass = 1000.0 * PI;
+    // x'' = -2 k x / m between them, begun at full speed: half a period later they fly apart as they came.
+    let half = PI * (mass / (2.0 * 2e3)).sqrt();
+    run_to(&mut *simulation, half, |_| ());
+    let bodies = simulation.bodies();
+    assert!((bodies[0].velocity[0] / -0.1 - 1.0).abs() < 0.01, "{bodies:?}");
+    let momentum: f64 = bodies.iter().map(|body| body.mass * body.velocity[0]).sum();
+    assert!(momentum.abs() < 1e-10 * mass, "{momentum}");
+    let work = simulation.ledger().external_work;
+    assert!((energy(&*simulation) - work - before).abs() < 1e-3 * before, "{work}");
+}
+
+/// The engine's name: a spring drags an elastic block slowly over a rough floor. The mean pull is the coefficient times
+/// the weight (E = 10 MPa, H = .1 m, 1 cm/s, mu .5: on the common grid .78 of it).
+#[test]
+fn a_dragged_block_rubs_by_its_coefficient() {
+    let text = "
+        gravity = [0, { table = [[0, 0], [0.05, -9.81]] }]
+        space = { dimension = 'plane-strain', cell = 0.025, interior = 'reference' }
+        time.end = 1
+        materials.gel = { density = 1000, neo_hookean = { young_modulus = 1e7, poisson_ratio = 0.3 } }
+        contact = [{ between = ['block', 'floor'], friction = 0.5 }, { law = 'none' }]
+        [[bodies]]
+        name = 'block'
+        material = 'gel'
+        shape.box = { min = [0, 0], max = [0.2, 0.1] }
+        [[bodies]]
+        name = 'floor'
+        material = 'gel'
+        shape.half_space = { point = [0, 0], normal = [0, 1] }
+        rigid = {}
+        [[bodies]]
+        name = 'hand'
+        material = 'gel'
+        shape.box = { min = [0.4, 0], max = [0.5, 0.1] }
+        rigid.velocity = [0.01, 0]
+        [[springs]]
+        name = 'spring'
+        from = { body = 'block', on = 'x_max' }
+        to = { body = 'hand', on = 'x_min' }
+        stiffness = 2e4
+    ";
+    let mut simulation = start(text);
+    run_to(&mut *simulation, 0.62, |_| ());
+    let first = simulation.contact_sums()[0].tangential;
+    run_to(&mut *simulation, 0.8, |_| ());
+    let last = simulation.contact_sums()[0].tangential;
+    let pull = (last[0] - first[0]).abs() / (simulation.time() - 0.62) / (0.5 * 1000.0 * 0.02 * 9.81);
+    println!("{pull}");
+    assert!((pull - 1.0).abs() < 0.02, "{pull}");
+}

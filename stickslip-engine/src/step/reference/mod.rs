@@ -16,6 +16,9 @@
 mod books;
 mod loads;
 mod rigid;
+mod springs;
+
+pub(super) use springs::center as center_of;
 
 use super::Engine;
 use crate::body::{Body, Particle, Totals};
@@ -227,6 +230,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }
         }
         booked.into_iter().for_each(|(load, sums)| state.loads[load].add(&sums));
+        let place_of = |body: usize| settings.references.binary_search_by_key(&body, |own| own.body).ok();
+        let springs = settings.springs.iter().zip(&state.springs).map(|(spring, sums)| {
+            let places = spring.ends.each_ref().map(|end| place_of(end.body));
+            let acts = places.iter().any(Option::is_some);
+            acts.then(|| springs::pull((spring, sums.way), places, (&state.bodies, &mut bodies), dt))
+        });
+        workspace.springs.own = springs.collect();
         let layers = &mut state.references.layers;
         layers.clear();
         layers.resize(bodies.len(), 0.0);

@@ -268,10 +268,13 @@ fn temperatures(scene: &Scene, _: usize) -> Option<Problem> {
 
 fn springs(scene: &Scene, _: usize) -> Option<Problem> {
     let mut ends = scene.springs.iter().enumerate().flat_map(|(i, spring)| {
-        ["from", "to"].into_iter().zip(&spring.ends).map(move |(key, end)| (i, key, end.body))
+        let [from, to] = spring.ends.each_ref().map(|end| end.body);
+        [("from", [from, to]), ("to", [to, from])].map(move |(key, bodies)| (i, key, bodies))
     });
-    let (i, key, body) = ends.find(|&(.., body)| is_reference(scene, body))?;
-    Some(problem(scene, body, format!("springs[{i}].{key}.body"), "a spring", "other bodies"))
+    let meets = |other: usize| is_reference(scene, other) || scene.bodies[other].is_prescribed();
+    let (i, key, [body, _]) = ends.find(|&(.., [body, other])| is_reference(scene, body) && !meets(other))?;
+    let allowed = "one to another such body, or to a rigid body whose motion is prescribed";
+    Some(problem(scene, body, format!("springs[{i}].{key}.body"), "a spring", allowed))
 }
 
 fn joints(scene: &Scene, _: usize) -> Option<Problem> {

@@ -143,7 +143,7 @@ fn what_a_body_on_the_grid_may_have_is_refused() {
             &[],
             "springs[0].to.body",
             "a spring",
-            "other bodies",
+            "one to another such body, or to a rigid body whose motion is prescribed",
         ),
     ] {
         let expected = format!("{key}: {found}, {of_a}{allowed}; or interior = \"grid\" for `a`");
