@@ -226,10 +226,12 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
                 // Else all its particles have left.
                 let found = of_body(&all, i).filter(|totals| totals.mass > 0.0);
                 let Some(totals) = found else { return BodyState::default() };
+                let by_nodes = self.reference_of(i).map(|place| self.spin_of(place, totals));
                 let spin = match &spins {
                     Some(spins) => *of_body(spins, i).expect("what has a mass turns somehow"),
                     None => body.spin(self.kernels, totals),
                 };
+                let spin = by_nodes.unwrap_or(spin);
                 BodyState {
                     mass: totals.mass,
                     position: totals.first_moment.map(|x| x / totals.mass),

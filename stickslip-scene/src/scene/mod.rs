@@ -244,7 +244,7 @@ pub struct Discretization {
     /// Where bodies that deform and do not say so are computed.
     #[serde(skip_serializing_if = "is_grid")]
     pub interior: Interior,
-    /// Why that was chosen, where the scene does not say it.
+    /// Why that was chosen, where the scene leaves it open.
     #[serde(skip)]
     pub because: Option<String>,
 }

@@ -31,7 +31,7 @@ use crate::lanes::{Laned, Processor};
 use crate::load::LoadSums;
 use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
 use crate::scene::{ContactLaw, FrictionMemory, Interior as Kind, Problem, Scene, StartVelocities};
-use crate::tensor::{Vector, cross};
+use crate::tensor::{Matrix, Vector, cross};
 use crate::threads::each;
 use rigid::RigidBody;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Partner, Rigid, Touch, find, press, slip,
+    Deforming, Friction, Memory, Met, Neighbours, Partner, Rigid, STIFFNESS, Touch, find, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -52,6 +52,10 @@ pub struct ReferenceBody<const D: usize> {
     surface: Vec<SurfacePoint<D>>,
     /// Moduli of its longitudinal and its shear wave at rest [Pa].
     moduli: [f64; 2],
+    /// Speed of its longitudinal wave at rest [m/s].
+    wave: f64,
+    /// What of a cell this wave may cross in a step while it touches others, see [`in_contact`].
+    courant: f64,
     /// How friction on it follows a change of pressure where its rule does not say so.
     memory: FrictionMemory,
 }
@@ -88,8 +92,35 @@ struct Homeward {
 }
 
 /// What of a cell the fastest wave may cross in a step, over what it may where bodies are on the common grid: a body
-/// alone is stable at 0.9 cells, and one in contact at 0.6, where the usual Courant number is 0.4.
+/// alone is stable at 0.9 cells, where the usual Courant number is 0.4.
 const LARGER_STEPS: f64 = 1.5;
+
+/// The usual Courant number, which bounds are measured by.
+const USUAL: f64 = 0.4;
+
+/// What of the step that the layer of contact allows is taken.
+const SAFE: f64 = 0.8;
+
+/// What of a cell a wave may cross in a step of a body whose surface is pressed on a rigid one everywhere, by a bound of
+/// its fastest motion (Gershgorin's theorem):
+///
+/// ```text
+/// dt = 2/w,   w^2 <= w_i^2 + max_I sum_s k A_s |N_I(X_s)| / M_I,   w_i = 2 c / (0.9 h)
+/// ```
+fn in_contact<const D: usize>(form: &Form<D>, surface: &[SurfacePoint<D>]) -> f64 {
+    let mut held = vec![0.0; form.nodes()];
+    for point in surface {
+        let weights = &point.weights;
+        weights.each(|k, value, _| held[weights.node + form.offsets[k] as usize] += point.area * value.abs());
+    }
+    for (node, masters, shares) in form.followers.iter() {
+        let own = std::mem::take(&mut held[node]);
+        masters.iter().zip(shares).for_each(|(&master, share)| held[master as usize] += own * share.abs());
+    }
+    let ratios = held.iter().zip(&form.node_volumes).filter(|(_, volume)| **volume > 0.0);
+    let most = ratios.map(|(area, volume)| area / volume).fold(0.0, f64::max);
+    2.0 / ((2.0_f64 / 0.9).powi(2) + STIFFNESS * most * form.cell).sqrt()
+}
 
 impl<const D: usize> ReferenceBody<D> {
     /// That of a body of a scene, and its nodes before anything moves, with velocities by place [m/s].
@@ -115,10 +146,13 @@ impl<const D: usize> ReferenceBody<D> {
         let width = sides[..D].iter().copied().fold(f64::INFINITY, f64::min);
         let nodes =
             Interior::new(form.clone(), material.density, |place| Vector::of(velocity(place.space())));
+        let surface = points(&body.shape, &form);
         let constants = ReferenceBody {
             body: number,
             shape: body.shape.clone(),
-            surface: points(&body.shape, &form),
+            wave: (modulus / material.density).sqrt(),
+            courant: in_contact(&form, &surface),
+            surface,
             moduli: [modulus, material.law.elastic().shear_modulus.max(1e-3 * modulus)],
             memory: FrictionMemory { length: width, speed: (modulus / material.density).sqrt() / TRANSITS },
         };
@@ -156,10 +190,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let start = Instant::now();
         let found = self.strain_references(dt);
         self.watch.lap("stress update", start);
-        self.judge(found.fault)?;
+        self.judge(found.iter().copied().fold(Found::NOTHING, Found::and).fault)?;
         self.judge(self.escaped_reference())?;
-        let fastest = self.fastest_reference(found.signal.f64());
-        self.workspace.reference_signal = Some(fastest);
+        self.workspace.reference_signal = Some(self.fastest_reference(&found));
         Ok(())
     }
 
@@ -259,7 +292,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 
     /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
-    fn strain_references(&mut self, dt: T) -> Found<T> {
+    fn strain_references(&mut self, dt: T) -> Vec<Found<T>> {
         let processor = match self.settings.path {
             ParticleLoop::Lanes(processor) => processor,
             ParticleLoop::OneLane => Processor::Any,
@@ -278,15 +311,52 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let straining = Straining { body: *body, dt, processor };
             *found = strain(interior, table, (&here.matter, &mut here.particles), straining);
         });
-        found.into_iter().fold(Found::NOTHING, Found::and)
+        found
     }
 
-    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave
-    /// in undeformed lengths.
-    fn fastest_reference(&self, wave: f64) -> f64 {
+    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave in
+    /// undeformed lengths of each. Those that touch others have shorter steps.
+    fn fastest_reference(&self, found: &[Found<T>]) -> f64 {
+        let mut touches = vec![false; found.len()];
+        for memory in &self.state.references.touching {
+            for body in [memory.body, memory.partner] {
+                self.reference_of(body as usize).into_iter().for_each(|place| touches[place] = true);
+            }
+        }
+        let of_body = |place: usize| {
+            let (own, wave) = (&self.settings.references[place], found[place].signal.f64());
+            match touches[place] {
+                true => (USUAL / (SAFE * own.courant)).max(1.0 / LARGER_STEPS) * wave.max(own.wave),
+                false => wave / LARGER_STEPS,
+            }
+        };
+        let waves = (0..found.len()).map(of_body).fold(0.0, f64::max);
         let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
         let speed = fastest.fold(0.0, |most: f64, v| most.max(v.dot(*v))).sqrt();
-        (wave / LARGER_STEPS).max(speed)
+        waves.max(speed)
+    }
+
+    /// Angular velocity of such a body, by its nodes: I w = L about the centre [rad/s].
+    pub(super) fn spin_of(&self, place: usize, totals: &Totals) -> [f64; 3] {
+        let nodes = &self.state.references.nodes[place];
+        let (center, momentum) = (totals.first_moment.map(|x| x / totals.mass), totals.momentum);
+        let orbit = cross(center, momentum);
+        let turn = [0, 1, 2].map(|k| totals.angular_momentum[k] - orbit[k]);
+        let mut inertia = Matrix([[0.0; 3]; 3]);
+        for (mass, at) in nodes.masses.iter().zip(&nodes.places) {
+            let arm = Vector(at.space()) - Vector(center);
+            for i in 0..3 {
+                for j in 0..3 {
+                    let square = if i == j { arm.dot(arm) } else { 0.0 };
+                    inertia.0[i][j] += mass * (square - arm[i] * arm[j]);
+                }
+            }
+        }
+        if D == 2 {
+            return [0.0, 0.0, turn[2] / inertia.0[2][2]];
+        }
+        let inverse = inertia.inverse();
+        [0, 1, 2].map(|i| (0..3).map(|j| inverse.0[i][j] * turn[j]).sum())
     }
 
     /// The first particle that has left the domain.

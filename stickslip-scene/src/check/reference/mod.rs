@@ -60,7 +60,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     found.map_or_else(|| contact::check(scene), Err)
 }
 
-/// Chooses where bodies are computed that do not say so, in a scene that does not say so either: on grids of their own
+/// Chooses where bodies are computed that do not say so, in a scene that leaves it open: on grids of their own
 /// where all of them are elastic and nothing asks for what these have not, such as a key of the common grid. It says
 /// why not.
 pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {

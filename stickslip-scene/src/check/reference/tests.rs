@@ -337,13 +337,13 @@ fn many_grains_take_no_longer_than_few() {
     assert_eq!(check(&scene).expect_err("viscosity").key, "contact[0].viscosity");
 }
 
-/// Elastic bodies are on grids of their own where the scene does not say where they are, and nothing speaks against it.
+/// Elastic bodies are on grids of their own where the scene leaves it open, and nothing speaks against it.
 #[test]
-fn scenes_that_say_nothing_have_what_fits_their_bodies() {
+fn scenes_that_leave_it_open_have_what_fits_their_bodies() {
     let chosen = |bodies: &str| {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.1 }}
+            space = {{ dimension = "plane-strain", cell = 0.1, interior = "auto" }}
             materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
             materials.clay = {{ density = 1, von_mises = {{ young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 }} }}
             materials.water = {{ density = 1, neo_hookean = {{ bulk_modulus = 1e6, shear_modulus = 0 }} }}

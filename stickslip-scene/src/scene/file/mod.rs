@@ -233,7 +233,7 @@ pub(super) fn resolve(source: &Source, files: &dyn SceneFiles) -> Result<Resolve
     if scene.time.relax.is_some() && !given {
         scene.outputs.tables = scene.rows_of_relaxation();
     }
-    if file.space.interior.is_none() {
+    if file.space.leaves_interior_open(context)? {
         let outputs = file.outputs.as_ref();
         let of_grid = [
             ("space.basis", file.space.basis.is_some()),

@@ -25,7 +25,7 @@ table! {
         basis: Option<Word<BasisKind>>,
         /// Where bodies that deform are computed; they may say so themselves.
         #[schemars(extend("default" = Interior::default()))]
-        interior: Option<Word<Interior>>,
+        interior: Option<Word<SceneInterior>>,
         /// Number format of particles and grid.
         #[schemars(extend("default" = Precision::default()))]
         precision: Option<Word<Precision>>,
@@ -101,6 +101,27 @@ impl Choice for Interior {
     ];
 }
 
+/// Where the bodies of a scene are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneInterior {
+    /// All there.
+    All(Interior),
+    /// By what they are made of.
+    Auto,
+}
+
+impl Choice for SceneInterior {
+    const WORDS: &'static [(&'static str, Self, &'static str)] = &[
+        ("grid", SceneInterior::All(Interior::Grid), <Interior as Choice>::WORDS[0].2),
+        ("reference", SceneInterior::All(Interior::Reference), <Interior as Choice>::WORDS[1].2),
+        (
+            "auto",
+            SceneInterior::Auto,
+            "On grids of their own where all that deforms is elastic and nothing asks for the common grid, else there.",
+        ),
+    ];
+}
+
 impl Choice for Precision {
     const WORDS: &'static [(&'static str, Self, &'static str)] =
         &[("double", Precision::Double, "64-bit numbers."), ("single", Precision::Single, "32-bit numbers.")];
@@ -152,10 +173,19 @@ impl Space {
         if let Some(word) = &self.basis {
             chosen.basis = word.value(context)?;
         }
-        if let Some(word) = &self.interior {
-            chosen.interior = word.value(context)?;
+        if let Some(SceneInterior::All(interior)) = self.scene_interior(context)? {
+            chosen.interior = interior;
         }
         Ok(chosen)
+    }
+
+    fn scene_interior(&self, context: &Context) -> Result<Option<SceneInterior>, Fault> {
+        self.interior.as_ref().map(|word| word.value(context)).transpose()
+    }
+
+    /// Whether it is left open where bodies are computed that do not say so.
+    pub fn leaves_interior_open(&self, context: &Context) -> Result<bool, Fault> {
+        Ok(self.scene_interior(context)? == Some(SceneInterior::Auto))
     }
 
     /// The box of all material, if there is one.
