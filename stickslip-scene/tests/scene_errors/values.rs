@@ -39,7 +39,7 @@ fn values_out_of_range() {
             (
                 "\"0.1 m\"",
                 "1\ninterior = \"referense\"",
-                "4:12: space.interior: found \"referense\"; allowed: \"grid\" or \"reference\"; did you mean `reference`?",
+                "4:12: space.interior: found \"referense\"; allowed: \"grid\", \"reference\" or \"auto\"; did you mean `reference`?",
             ),
             (
                 "radius = \"0.4 m\" }",
