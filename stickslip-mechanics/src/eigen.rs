@@ -117,6 +117,39 @@ mod tests {
         assert_eq!((none.values, none.axes), ([0.0; 3], Matrix::IDENTITY));
     }
 
+    /// Diagonals, shears, and values that are one, also of little size.
+    #[test]
+    fn principal_values_and_directions_are_those_of_the_matrix() {
+        let turn = Matrix::rotation_by([0.4, -0.7, 1.1]);
+        for values in [
+            [1.0, 2.0, 3.0],
+            [3.0, 1.0, 1.0],
+            [1.0, 1.0, -2.0],
+            [1.0, 1.0 + 1e-9, 1.0],
+            [0.0; 3],
+            [5.0; 3],
+            [1e9, 1.0, -1e-3],
+            [1e-12, 3e-12, -2e-12],
+            [0.0, 0.0, 1e-25],
+        ] {
+            let largest = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+            for turn in [Matrix::IDENTITY, turn, turn * turn] {
+                let matrix = Principal { values, axes: turn }.with(values);
+                let principal = Principal::of(&matrix);
+                let (mut found, columns) = (principal.values, principal.axes);
+                let off = principal.with(found) - matrix;
+                assert!(off.0.iter().all(|x| x.abs() <= 4e-15 * largest), "{values:?} {off:?}");
+                let unit = columns * columns.transpose() - Matrix::IDENTITY;
+                assert!(unit.0.as_flattened().iter().all(|x| x.abs() < 1e-14), "{values:?} {unit:?}");
+                let mut expected = values;
+                found.sort_by(f64::total_cmp);
+                expected.sort_by(f64::total_cmp);
+                let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 4e-15 * largest;
+                assert!(found.iter().zip(&expected).all(near), "{found:?} {expected:?}");
+            }
+        }
+    }
+
     #[test]
     fn single_precision_finds_them_too() {
         let mut chance = Chance(2);

@@ -367,50 +367,6 @@ impl<T: Number> Symmetric<T> {
         (root + root) * (T::of(2.0) * y * y - T::ONE)
     }
 
-    /// Eigenvalues, in no order, and the unit vectors along which they lie as columns of a matrix, with no branch.
-    ///
-    /// Six sweeps of Jacobi's rotations (Golub and Van Loan 2013, section 8.5): they converge by squares, and five
-    /// leave what numbers of 64 bits round to.
-    #[inline(always)]
-    pub fn principal(&self) -> ([T; 3], Matrix<T>) {
-        let (mut a, mut v) = (self.matrix().0, Matrix::IDENTITY.0);
-        for _ in 0..6 {
-            for turn in 0..3 {
-                let [p, q, r] = [[0, 1, 2], [0, 2, 1], [1, 2, 0]][turn];
-                let off = a[p][q];
-                let half = T::HALF * (a[q][q] - a[p][p]);
-                let length = half.abs() + (half * half + off * off).sqrt();
-                // Where there is nothing to turn, nothing is divided.
-                let size = (off / length.max(T::of(1e-30))).max(-T::ONE).min(T::ONE);
-                let tangent = T::select(half.at_least(T::ZERO), size, -size);
-                let cosine = T::ONE / (T::ONE + tangent * tangent).sqrt();
-                let sine = tangent * cosine;
-                a[p][p] -= tangent * off;
-                a[q][q] += tangent * off;
-                let (first, second) = (a[r][p], a[r][q]);
-                (a[p][q], a[q][p]) = (T::ZERO, T::ZERO);
-                (a[r][p], a[r][q]) = (cosine * first - sine * second, sine * first + cosine * second);
-                (a[p][r], a[q][r]) = (a[r][p], a[r][q]);
-                for row in &mut v {
-                    let (first, second) = (row[p], row[q]);
-                    (row[p], row[q]) = (cosine * first - sine * second, sine * first + cosine * second);
-                }
-            }
-        }
-        ([a[0][0], a[1][1], a[2][2]], Matrix(v))
-    }
-
-    /// sum_i x_i v_i v_i^T of the columns v_i of a matrix.
-    #[inline(always)]
-    pub fn along(values: [T; 3], columns: &Matrix<T>) -> Self {
-        let v = &columns.0;
-        const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
-        Symmetric(array(T::ZERO, |k| {
-            let [i, j] = PAIRS[k];
-            values[0] * v[i][0] * v[j][0] + values[1] * v[i][1] * v[j][1] + values[2] * v[i][2] * v[j][2]
-        }))
-    }
-
     /// A v in the dimension of v.
     #[inline(always)]
     pub fn times<const D: usize>(&self, v: Vector<T, D>) -> Vector<T, D> {
@@ -466,42 +422,5 @@ impl<T: Number> Mul<T> for Symmetric<T> {
     #[inline(always)]
     fn mul(self, factor: T) -> Self {
         Symmetric(array(T::ZERO, |i| self.0[i] * factor))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Diagonals, shears, and values that are one, also of little size.
-    #[test]
-    fn principal_values_and_directions_are_those_of_the_matrix() {
-        let turn = Matrix::rotation_by([0.4, -0.7, 1.1]);
-        for values in [
-            [1.0, 2.0, 3.0],
-            [3.0, 1.0, 1.0],
-            [1.0, 1.0, -2.0],
-            [1.0, 1.0 + 1e-9, 1.0],
-            [0.0; 3],
-            [5.0; 3],
-            [1e9, 1.0, -1e-3],
-            [1e-12, 3e-12, -2e-12],
-            [0.0, 0.0, 1e-25],
-        ] {
-            let largest = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-            for turn in [Matrix::IDENTITY, turn, turn * turn] {
-                let matrix = Symmetric::along(values, &turn);
-                let (mut found, columns) = matrix.principal();
-                let off = Symmetric::along(found, &columns) - matrix;
-                assert!(off.0.iter().all(|x| x.abs() <= 4e-15 * largest), "{values:?} {off:?}");
-                let unit = columns * columns.transpose() - Matrix::IDENTITY;
-                assert!(unit.0.as_flattened().iter().all(|x| x.abs() < 1e-14), "{values:?} {unit:?}");
-                let mut expected = values;
-                found.sort_by(f64::total_cmp);
-                expected.sort_by(f64::total_cmp);
-                let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 4e-15 * largest;
-                assert!(found.iter().zip(&expected).all(near), "{found:?} {expected:?}");
-            }
-        }
     }
 }

@@ -249,9 +249,9 @@ impl<T: Number> Law<T> for DruckerPrager<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::plane_stress::thickening;
     use crate::material::soil::tests::{
-        Chance, State, along_axes, in_single_precision, ledger, only_turns, pressed, random_paths, stiffest,
+        Chance, State, along_axes, in_single_precision, ledger, only_turns, plates_have_a_thickness, pressed,
+        random_paths, stiffest_on_paths,
     };
     use crate::material::tests::{hooke, motion_of, sample_gradients};
     use crate::material::{LAWS, Material, NoStretch};
@@ -437,16 +437,7 @@ mod tests {
     #[test]
     fn the_wave_modulus_is_an_upper_bound() {
         for law in laws() {
-            let start = State::under(Symmetric::isotropic(-100e3));
-            let mut largest = stiffest(&law, &start);
-            let mut chance = Chance::new(3);
-            for path in 0..200 {
-                let mut state = start;
-                for _ in 0..4 {
-                    state = state.moved(&law, chance.increment([1e-3, 1e-2][path % 2]));
-                    largest = largest.max(stiffest(&law, &state));
-                }
-            }
+            let largest = stiffest_on_paths(&law, Symmetric::isotropic(-100e3));
             assert!((0.75..1.0 + 1e-5).contains(&largest), "{law:?}: {largest}");
         }
     }
@@ -454,22 +445,7 @@ mod tests {
     #[test]
     fn a_thin_plate_of_it_has_a_thickness() {
         for law in laws() {
-            for path in 0..300 {
-                let mut chance = Chance::new(path + 1);
-                let mut state: State<[f64; 3]> = State::under(Symmetric::ZERO);
-                let size = [1e-5, 1e-4, 1e-3, 1e-2][path as usize % 4];
-                for _ in 0..6 {
-                    let mut step = chance.in_plane(size);
-                    let deformation = step * state.motion.deformation;
-                    let motion =
-                        Motion { deformation, jacobian: deformation.det(), increment: step, ..state.motion };
-                    let found = thickening(&law, &motion, &state.history);
-                    assert_eq!(found.found, 1, "{law:?} {path} {state:?} {step:?}");
-                    step.0[2][2] = found.stretch;
-                    state = state.moved(&law, step);
-                    assert!(state.stress().0[2].abs() < 1e-7 * ELASTIC.bulk_modulus, "{state:?}");
-                }
-            }
+            plates_have_a_thickness(&law, ELASTIC.bulk_modulus);
         }
     }
 

@@ -167,6 +167,7 @@ pub(super) fn opening<T: Number>(elastic: &Hypoelastic<T>, tension: T, missing: 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::material::plane_stress::thickening;
     use crate::material::tests::{motion_of, rotation, sample_gradients};
     use crate::material::{Entries, Law, Response};
     use crate::tensor::Matrix;
@@ -356,6 +357,43 @@ pub(super) mod tests {
             }
         }
         largest
+    }
+
+    /// The same over 200 random paths of a few steps from a stress.
+    pub fn stiffest_on_paths<L: Law<f64>>(law: &L, stress: Symmetric<f64>) -> f64 {
+        let start = State::under(stress);
+        let mut largest = stiffest(law, &start);
+        let mut chance = Chance::new(3);
+        for path in 0..200 {
+            let mut state = start;
+            for _ in 0..4 {
+                state = state.moved(law, chance.increment([1e-3, 1e-2][path % 2]));
+                largest = largest.max(stiffest(law, &state));
+            }
+        }
+        largest
+    }
+
+    /// Plates on 300 random paths from rest have a thickness that leaves next to no stress out of the plane, over this
+    /// modulus.
+    pub fn plates_have_a_thickness<L: Law<f64> + std::fmt::Debug>(law: &L, modulus: f64) {
+        for path in 0..300 {
+            let mut chance = Chance::new(path + 1);
+            let mut state: State<L::History> = State::under(Symmetric::ZERO);
+            let size = [1e-5, 1e-4, 1e-3, 1e-2][path as usize % 4];
+            for _ in 0..6 {
+                let mut step = chance.in_plane(size);
+                let deformation = step * state.motion.deformation;
+                let jacobian = deformation.det();
+                let motion = Motion { deformation, jacobian, increment: step, ..state.motion };
+                let found = thickening(law, &motion, &state.history);
+                let now = (state.motion, state.history.entries());
+                assert_eq!(found.found, 1, "{law:?} {path} {now:?} {step:?}");
+                step.0[2][2] = found.stretch;
+                state = state.moved(law, step);
+                assert!(state.stress().0[2].abs() < 1e-7 * modulus, "{:?}", state.motion);
+            }
+        }
     }
 
     /// Steps along sample gradients of this size, to and fro, from a stress: by how much the work misses what is stored
