@@ -13,7 +13,10 @@ from conftest import flying, rings, settling
 from stickslip.scene import CHECKPOINT
 from stickslip.simulation import DERIVED, WRITABLE
 
-LAWS = "neo_hookean hypoelastic von_mises viscoelastic damage".split()
+LAWS = (
+    "neo_hookean hypoelastic hencky mooney_rivlin ogden fluid johnson_cook armstrong_frederick von_mises viscoelastic "
+    "damage drucker_prager modified_cam_clay mohr_coulomb mu_i"
+).split()
 
 
 def test_a_column_that_is_assigned_is_refused_and_stays():
