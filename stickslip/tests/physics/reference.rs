@@ -86,8 +86,9 @@ fn a_disk_rolls_and_slides_down_a_slope() {
 }
 
 /// A soft disk rolls on under its weight: nothing brakes it in the continuum but what slips at the ends of the contact.
-/// R/8, 0.086 of the wave speed: after four turns the common grid has left 0.89. Steps in which contact is stable leave
-/// 0.957 here, those of .6 cells, which are not, 0.974; 0.985 is asked.
+/// R/8, 0.086 of the wave speed: after four turns the common grid has left 0.89; 0.985 is asked, and .9773 found. Energy
+/// is kept whatever the Courant number: points of a surface bounce off and on, and steps that were longer each time they
+/// were off gave +60 % at 0.45.
 #[test]
 fn a_disk_rolls_on() {
     let speed = 0.0862 * WAVE;
@@ -97,16 +98,27 @@ fn a_disk_rolls_on() {
     let rest = body
         + "[[bodies]]\nname = 'ground'\nmaterial = 'rubber'\nrigid = {}\n\
            shape.half_space = { point = [0, 0], normal = [0, 1] }\n[[contact]]\nfriction = 0.5\n";
-    let mut simulation = start(&(format!("gravity = [0, -{g}]\n") + &scene(0.125, &rest)));
     let turn = TAU / speed;
-    let (mut sum, mut count) = (0.0, 0.0);
-    run_to(&mut *simulation, 4.0 * turn, |simulation| {
-        if simulation.time() > 3.0 * turn {
-            (sum, count) = (sum + simulation.bodies()[0].velocity[0] / speed, count + 1.0);
-        }
-    });
-    println!("after four turns {}", sum / count);
-    assert!(sum / count > 0.95 && sum / count < 1.0, "{}", sum / count);
+    for courant in [0.4, 0.45, 0.6] {
+        let text = (format!("gravity = [0, -{g}]\n") + &scene(0.125, &rest))
+            .replace("time.end = 1", &format!("time = {{ end = 1, courant = {courant} }}"));
+        let mut simulation = start(&text);
+        let all = |simulation: &dyn Simulation| {
+            let disk = &simulation.bodies()[0];
+            energy(simulation) + simulation.ledger().friction + g * disk.mass * disk.position[1]
+        };
+        let before = all(&*simulation);
+        let (mut sum, mut count) = (0.0, 0.0);
+        run_to(&mut *simulation, 4.0 * turn, |simulation| {
+            if simulation.time() > 3.0 * turn {
+                (sum, count) = (sum + simulation.bodies()[0].velocity[0] / speed, count + 1.0);
+            }
+        });
+        let kept = all(&*simulation) / before - 1.0;
+        println!("courant {courant}: after four turns {}, energy {kept}", sum / count);
+        assert!(sum / count > 0.97 && sum / count < 1.0, "courant {courant}: {}", sum / count);
+        assert!(kept.abs() < 0.005, "courant {courant}: energy {kept}");
+    }
 }
 
 /// A floor moves slowly under a block that is pressed on it: friction is mu times the push, however slow it moves. An

@@ -56,6 +56,8 @@ pub struct ReferenceBody<const D: usize> {
     wave: f64,
     /// What of a cell this wave may cross in a step while it touches others, see [`in_contact`].
     courant: f64,
+    /// Transit of this wave through its narrowest side [s].
+    transit: f64,
     /// How friction on it follows a change of pressure where its rule does not say so.
     memory: FrictionMemory,
 }
@@ -67,8 +69,18 @@ pub struct References<const D: usize> {
     pub nodes: Vec<Interior<D>>,
     /// What is known of points that touch.
     pub touching: Vec<Memory>,
-    /// Energy that each body's part of the layers stores [J].
-    pub layers: Vec<f64>,
+    /// What each body's contact leaves behind.
+    pub left: Vec<Left>,
+}
+
+/// What the contact of a body leaves behind in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Left {
+    /// Energy that its part of the layers stores [J].
+    energy: f64,
+    /// For how long its steps are as short as in contact yet [s]: a surface that bounces off and on under steps that
+    /// jump takes energy from nowhere.
+    lingers: f64,
 }
 
 /// The nodes of such a body as data: numbers one behind the other.
@@ -79,7 +91,7 @@ pub(crate) struct SavedNodes {
     places: Vec<f64>,
     velocities: Vec<f64>,
     forces: Vec<f64>,
-    layer: f64,
+    left: Left,
 }
 
 /// What a rank tells the others in a step.
@@ -91,8 +103,10 @@ struct Homeward {
     loads: Vec<(usize, LoadSums)>,
 }
 
-/// What of a cell the fastest wave may cross in a step, over what it may where bodies are on the common grid: a body
-/// alone is stable at 0.9 cells, where the usual Courant number is 0.4.
+/// What of a cell the fastest wave may cross in a step of a body alone.
+const ALONE: f64 = 0.9;
+
+/// What of that it does cross, over what it does where bodies are on the common grid.
 const LARGER_STEPS: f64 = 1.5;
 
 /// The usual Courant number, which bounds are measured by.
@@ -119,7 +133,7 @@ fn in_contact<const D: usize>(form: &Form<D>, surface: &[SurfacePoint<D>]) -> f6
     }
     let ratios = held.iter().zip(&form.node_volumes).filter(|(_, volume)| **volume > 0.0);
     let most = ratios.map(|(area, volume)| area / volume).fold(0.0, f64::max);
-    2.0 / ((2.0_f64 / 0.9).powi(2) + STIFFNESS * most * form.cell).sqrt()
+    2.0 / ((2.0 / ALONE).powi(2) + STIFFNESS * most * form.cell).sqrt()
 }
 
 impl<const D: usize> ReferenceBody<D> {
@@ -147,14 +161,16 @@ impl<const D: usize> ReferenceBody<D> {
         let nodes =
             Interior::new(form.clone(), material.density, |place| Vector::of(velocity(place.space())));
         let surface = points(&body.shape, &form);
+        let wave = (modulus / material.density).sqrt();
         let constants = ReferenceBody {
             body: number,
             shape: body.shape.clone(),
-            wave: (modulus / material.density).sqrt(),
+            wave,
+            transit: width / wave,
             courant: in_contact(&form, &surface),
             surface,
             moduli: [modulus, material.law.elastic().shear_modulus.max(1e-3 * modulus)],
-            memory: FrictionMemory { length: width, speed: (modulus / material.density).sqrt() / TRANSITS },
+            memory: FrictionMemory { length: width, speed: wave / TRANSITS },
         };
         Ok((constants, nodes))
     }
@@ -270,15 +286,19 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             acts.then(|| springs::pull((spring, sums.way), places, (&state.bodies, &mut bodies), dt))
         });
         workspace.springs.own = springs.collect();
-        let layers = &mut state.references.layers;
-        layers.clear();
-        layers.resize(bodies.len(), 0.0);
+        let left = &mut state.references.left;
+        left.resize(bodies.len(), Left::default());
+        left.iter_mut().for_each(|left| *left = Left { energy: 0.0, lingers: (left.lingers - dt).max(0.0) });
+        let mut leave = |side: usize, energy: f64| {
+            left[side].energy += energy;
+            left[side].lingers = settings.references[side].transit;
+        };
         for touch in &touches {
             match touch.met {
                 Met::Deforming(b, _) => {
-                    [touch.side, b].iter().for_each(|&side| layers[side] += 0.5 * touch.energy())
+                    [touch.side, b].iter().for_each(|&side| leave(side, 0.5 * touch.energy()))
                 }
-                Met::Rigid(_) => layers[touch.side] += touch.energy(),
+                Met::Rigid(_) => leave(touch.side, touch.energy()),
             }
         }
         state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
@@ -315,20 +335,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 
     /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave in
-    /// undeformed lengths of each. Those that touch others have shorter steps.
+    /// undeformed lengths of each. Those that touch others, or did so just now, have shorter steps.
     fn fastest_reference(&self, found: &[Found<T>]) -> f64 {
-        let mut touches = vec![false; found.len()];
-        for memory in &self.state.references.touching {
-            for body in [memory.body, memory.partner] {
-                self.reference_of(body as usize).into_iter().for_each(|place| touches[place] = true);
-            }
-        }
+        let courant = self.settings.time.courant;
         let of_body = |place: usize| {
             let (own, wave) = (&self.settings.references[place], found[place].signal.f64());
-            match touches[place] {
-                true => (USUAL / (SAFE * own.courant)).max(1.0 / LARGER_STEPS) * wave.max(own.wave),
-                false => wave / LARGER_STEPS,
+            let alone = wave * (1.0 / LARGER_STEPS).max(courant / ALONE);
+            if self.state.references.left[place].lingers == 0.0 {
+                return alone;
             }
+            alone.max(wave.max(own.wave) * (USUAL / SAFE).max(courant) / own.courant)
         };
         let waves = (0..found.len()).map(of_body).fold(0.0, f64::max);
         let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
@@ -377,7 +393,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let Some(place) = self.reference_of(body) else { return totals };
         let nodes = &self.state.references.nodes[place];
         totals.kinetic = nodes.kinetic();
-        totals.strain += self.state.references.layers.get(place).copied().unwrap_or(0.0);
+        totals.strain += self.state.references.left.get(place).map_or(0.0, |left| left.energy);
         totals.momentum = nodes.momentum().space();
         let mut sums = [[0.0; 3]; 2];
         for ((mass, place), velocity) in nodes.masses.iter().zip(&nodes.places).zip(&nodes.velocities) {
@@ -394,14 +410,14 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The nodes of these bodies as data, and the points that touch. Of several ranks the first knows the forces on
     /// all.
     pub(super) fn saved_nodes(&self) -> (Vec<SavedNodes>, Vec<Memory>) {
-        let References { nodes, touching, layers } = &self.state.references;
+        let References { nodes, touching, left } = &self.state.references;
         let mut saved: Vec<SavedNodes> = (nodes.iter().enumerate())
             .map(|(place, nodes)| SavedNodes {
                 body: self.settings.references[place].body,
                 places: flat(&nodes.places),
                 velocities: flat(&nodes.velocities),
                 forces: flat(&nodes.forces),
-                layer: layers.get(place).copied().unwrap_or(0.0),
+                left: left.get(place).copied().unwrap_or_default(),
             })
             .collect();
         if self.among.is_some() && !saved.is_empty() {
@@ -472,11 +488,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// Begins with these nodes.
     pub(super) fn begin_nodes(&mut self, carried: CarriedNodes) {
-        let References { nodes, touching, layers } = &mut self.state.references;
-        layers.resize(nodes.len(), 0.0);
+        let References { nodes, touching, left } = &mut self.state.references;
+        left.resize(nodes.len(), Left::default());
         for (place, saved) in &carried.nodes {
             saved.put_in(&mut nodes[*place]);
-            layers[*place] = saved.layer;
+            left[*place] = saved.left;
         }
         *touching = carried.touching;
         self.workspace.neighbours = Neighbours::default();
@@ -540,7 +556,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// Goes on with these nodes.
     pub(super) fn take_up_nodes(&mut self, saved: &[SavedNodes], touching: Vec<Memory>) {
         self.state.references.nodes.iter_mut().zip(saved).for_each(|(nodes, saved)| saved.put_in(nodes));
-        self.state.references.layers = saved.iter().map(|saved| saved.layer).collect();
+        self.state.references.left = saved.iter().map(|saved| saved.left).collect();
         self.state.references.touching = touching;
     }
 }
