@@ -24,7 +24,7 @@ table! {
         #[schemars(extend("default" = BasisKind::default()))]
         basis: Option<Word<BasisKind>>,
         /// Where bodies that deform are computed; they may say so themselves.
-        #[schemars(extend("default" = Interior::default()))]
+        #[schemars(extend("default" = "auto"))]
         interior: Option<Word<SceneInterior>>,
         /// Number format of particles and grid.
         #[schemars(extend("default" = Precision::default()))]
@@ -185,7 +185,7 @@ impl Space {
 
     /// Whether it is left open where bodies are computed that do not say so.
     pub fn leaves_interior_open(&self, context: &Context) -> Result<bool, Fault> {
-        Ok(self.scene_interior(context)? == Some(SceneInterior::Auto))
+        Ok(matches!(self.scene_interior(context)?, None | Some(SceneInterior::Auto)))
     }
 
     /// The box of all material, if there is one.
