@@ -157,6 +157,8 @@ pub struct Workspace<T, const D: usize> {
     pub sums: StepSums,
     /// What bodies did to faces in the step, where somebody asks.
     pub wall_sums: WallBooks,
+    /// The same of bodies on grids of their own, as they touched the faces.
+    pub reference_walls: WallBooks,
     /// Room for loads and supports.
     pub loads: LoadRoom<T, D>,
     /// Room for laws that take a body at once.
@@ -206,6 +208,7 @@ impl<T, const D: usize> Workspace<T, D> {
             damped: Vec::new(),
             sums: StepSums::default(),
             wall_sums: WallBooks::default(),
+            reference_walls: WallBooks::default(),
             loads: LoadRoom::default(),
             laws: LawRoom::default(),
             springs: SpringRoom::default(),

@@ -31,7 +31,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let workspace = &mut self.workspace;
         let (all, active, n) = (&self.state.bodies, &workspace.active, nodes_per_block(D));
         let booked = &mut workspace.wall_sums;
-        booked.clear();
+        *booked = std::mem::take(&mut workspace.reference_walls);
         workspace.boundary.book(&workspace.field, dt, |node, impulse| {
             let (_, block) = active.slots[node.index / n];
             if all[node.body as usize].is_rigid() || !active.books(block) {

@@ -71,6 +71,13 @@ impl<T: Laned, const D: usize> Work for Visit<'_, T, D> {
     fn run<M: Machine<T>>(mut self) {
         if D == 3 { self.cells::<M::Wide>() } else { self.cells::<M::Quad>() }
     }
+
+    /// One particle at a time on x86-64: laws for several that few processors need would be a tenth of the program.
+    #[cfg(all(target_arch = "x86_64", not(portable_lanes)))]
+    fn run_anywhere(mut self) {
+        let form = self.interior.form.clone();
+        form.cells.iter().enumerate().for_each(|(number, cell)| self.one_by_one(number, cell));
+    }
 }
 
 /// What a body's particles have in common, in lanes.
@@ -110,14 +117,14 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 Members::copied::<V>(&columns, &index[..count], &verbs, &mut copies)
             };
             if self.lanes(&constants, (number, cell, 0), &members).is_err() {
-                self.find_fault(number, cell);
+                self.one_by_one(number, cell);
             }
         }
     }
 
-    /// Takes the particles of a cell one by one, to find out what is wrong with whom.
+    /// Takes the particles of a cell one by one, and finds out what is wrong with whom.
     #[inline(never)]
-    fn find_fault(&mut self, number: usize, cell: &Cell) {
+    fn one_by_one(&mut self, number: usize, cell: &Cell) {
         let constants = self.constants::<Pack<T, 1>>();
         let (columns, all) = (self.columns, cell.first..cell.first + cell.count);
         for (lane, particle) in all.enumerate() {

@@ -4,15 +4,20 @@ use crate::contact::BlockSums;
 use crate::tensor::{Vector, cross};
 use stickslip_reference::contact::{Met, Rigid, Touch};
 
-/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies.
+/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies. Partners have the numbers below
+/// `bodies`, faces of the domain those from there on.
 pub(super) fn book<const D: usize>(
     all: &mut Vec<BlockSums>,
     rigid: &[&dyn Rigid],
     (touches, dt): (&[Touch<D>], f64),
+    bodies: usize,
 ) {
     all.clear();
     for touch in touches {
         let [body, partner] = [touch.memory.body as usize, touch.memory.partner as usize];
+        if partner >= bodies {
+            continue;
+        }
         let pair = [body.min(partner), body.max(partner)];
         let place = all.binary_search_by_key(&pair, |sums| sums.bodies).unwrap_or_else(|place| {
             all.insert(place, BlockSums { bodies: pair, ..BlockSums::default() });

@@ -17,6 +17,7 @@ mod books;
 mod loads;
 mod rigid;
 mod springs;
+mod walls;
 
 pub(super) use springs::center as center_of;
 
@@ -43,6 +44,7 @@ use stickslip_reference::contact::{
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
+use walls::RigidWall;
 
 /// What of such a body never changes.
 pub struct ReferenceBody<const D: usize> {
@@ -217,10 +219,14 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let gravity = Vector::<f64, D>::of(self.settings.gravity.over_step(self.state.time, dt));
         let loads = self.feel_reference_loads(dt)?;
         let damping = self.settings.damping.double();
+        let walls = self.rigid_walls();
         let Engine { settings, state, workspace, among, .. } = self;
         let rigid: Vec<RigidBody<'_>> =
             settings.rigid.iter().filter_map(|&body| RigidBody::new(body, &state.bodies[body])).collect();
-        let rigid: Vec<&dyn Rigid> = rigid.iter().map(|rigid| rigid as &dyn Rigid).collect();
+        let rigid: Vec<&dyn Rigid> = (rigid.iter().map(|rigid| rigid as &dyn Rigid))
+            .chain(walls.iter().map(|wall| wall as &dyn Rigid))
+            .collect();
+        let count = state.bodies.len();
         let nodes = state.references.nodes.iter_mut();
         let mut bodies: Vec<Deforming<'_, D>> = (settings.references.iter().zip(nodes))
             .map(|(constants, interior)| Deforming {
@@ -236,10 +242,14 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 Partner::Deforming(b) => settings.references[b].body,
                 Partner::Rigid(r) => rigid[r].body(),
             };
-            settings.rules.rule(settings.rules.number(settings.references[a].body, other)).law
-                != ContactLaw::None
+            other >= count
+                || settings.rules.rule(settings.rules.number(settings.references[a].body, other)).law
+                    != ContactLaw::None
         };
-        let rule = |touch: &Touch<D>| friction((&settings.rules, &settings.references), touch);
+        let rule = |touch: &Touch<D>| match (touch.memory.partner as usize).checked_sub(count) {
+            Some(wall) => walls::friction(settings.walls[wall].face),
+            None => friction((&settings.rules, &settings.references), touch),
+        };
         let all = (&bodies[..], &rigid[..]);
         let mut touches = find(all, &state.references.touching, &meet, &mut workspace.neighbours);
         press(&mut bodies, &mut touches, &rule);
@@ -303,12 +313,25 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
         workspace.neighbours.moved((&bodies, &rigid), dt);
-        books::book(&mut workspace.reference_touches, &rigid, (&touches, dt));
+        books::book(&mut workspace.reference_touches, &rigid, (&touches, dt), count);
+        workspace.reference_walls.clear();
+        if !state.walls.is_empty() {
+            let here = |body: usize| !state.bodies[body].particles.is_empty();
+            RigidWall::book(&walls, &mut workspace.reference_walls, (&touches, dt), (here, count));
+        }
         if let Some(among) = among {
             workspace.reference_touches.retain(|touch| among.keeps(touch.bodies));
         }
         bodies.into_iter().for_each(|body| body.interior.advance(dt));
         Ok(())
+    }
+
+    /// The closed faces of the domain.
+    fn rigid_walls(&self) -> Vec<RigidWall> {
+        let Some(corners) = self.settings.domain else { return Vec::new() };
+        let (corners, bodies) = (corners.map(Vector::space), self.state.bodies.len());
+        let walls = self.settings.walls.iter().enumerate();
+        walls.map(|(number, wall)| RigidWall::new(wall, (number, bodies), corners)).collect()
     }
 
     /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
@@ -375,9 +398,15 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         [0, 1, 2].map(|i| (0..3).map(|j| inverse.0[i][j] * turn[j]).sum())
     }
 
-    /// The first particle that has left the domain.
+    /// The first particle that has left the domain through an open face.
     fn escaped_reference(&self) -> Option<ParticleFault> {
-        let [min, max] = self.settings.held?;
+        let [mut min, mut max] = self.settings.held?;
+        for wall in &self.settings.walls {
+            match wall.inward {
+                1 => min[wall.axis] = T::of(f64::NEG_INFINITY),
+                _ => max[wall.axis] = T::of(f64::INFINITY),
+            }
+        }
         let outside = |x: Vector<T, D>| (0..D).any(|k| x[k] < min[k] || x[k] > max[k]);
         self.settings.references.iter().find_map(|reference| {
             let particles = &self.state.bodies[reference.body].particles;

@@ -73,17 +73,8 @@ pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
         let law = material(scene, body).law.name();
         Some(format!("`{}` is of a material that may flow or part, `{law}`", scene.bodies[body].name))
     };
-    // A body may come to a face that holds it, and pass one through which it leaves.
-    let face = || {
-        let domain = scene.domain.as_ref()?;
-        let faces = (0..scene.dimension.axes()).flat_map(|k| domain.faces[k].into_iter().zip(FACES[k]));
-        let mut held = faces.filter(|(face, _)| *face != Face::Open);
-        let (_, name) = held.next()?;
-        Some(format!("the domain has a face that is not open, `{name}`"))
-    };
     let because = (wanted.map(|key| format!("`{key}` is written")))
         .or_else(inelastic)
-        .or_else(face)
         .or_else(|| check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found)))
         .or_else(|| no_grid(scene));
     if let Some(why) = because {

@@ -343,7 +343,8 @@ fn scenes_that_leave_it_open_have_what_fits_their_bodies() {
     let chosen = |bodies: &str| {
         let text = format!(
             r#"
-            space = {{ dimension = "plane-strain", cell = 0.1, interior = "auto" }}
+            space.dimension = "plane-strain"
+            space.cell = 0.1
             materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
             materials.clay = {{ density = 1, von_mises = {{ young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3 }} }}
             materials.water = {{ density = 1, neo_hookean = {{ bulk_modulus = 1e6, shear_modulus = 0 }} }}
@@ -364,6 +365,13 @@ fn scenes_that_leave_it_open_have_what_fits_their_bodies() {
     assert_eq!(own, (Interior::Reference, None));
     let rigid = disk("b", "clay", "rigid = {}");
     assert_eq!(chosen(&format!("{time}\n{}{rigid}", disk("a", "rubber", ""))).0, Interior::Reference);
+    let [far, near] = ["-2", "-1"].map(|low| {
+        let domain = format!("[space.domain]\nmin = [-2, {low}]\nmax = [2, 2]\ny_min = 'fixed'");
+        chosen(&format!("{time}\n{domain}\n{}", disk("a", "rubber", "")))
+    });
+    assert_eq!(far, (Interior::Reference, None));
+    assert_eq!(near.0, Interior::Grid);
+    assert!(near.1.as_ref().is_some_and(|why| why.contains("reaches the face `y_min`")), "{near:?}");
     for (top, body, why) in [
         (time, disk("a", "clay", ""), "`a` is of a material that may flow or part, `von_mises`"),
         (time, disk("a", "water", ""), "`a` is of a material that may flow or part, `neo_hookean`"),
