@@ -159,11 +159,16 @@ fn build_for(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Box<
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
             Box::new(Engine::<f64, 2>::of(scene, path, keeping)?)
         }
+        #[cfg(not(test))]
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
             Box::new(Engine::<f32, 2>::of(scene, path, keeping)?)
         }
         (Dimension::Space, Precision::Double) => Box::new(Engine::<f64, 3>::of(scene, path, keeping)?),
+        #[cfg(not(test))]
         (Dimension::Space, Precision::Single) => Box::new(Engine::<f32, 3>::of(scene, path, keeping)?),
+        // They would double what is compiled for the tests of this crate, which do not ask for them.
+        #[cfg(test)]
+        (_, Precision::Single) => unreachable!("tests of this crate are in double precision"),
     })
 }
 
