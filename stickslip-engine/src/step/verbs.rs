@@ -392,6 +392,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// Moves rigid bodies by the velocities that they have.
     pub(super) fn move_rigid_bodies(&mut self, dt: T) -> Result<(), StepError> {
         let start = Instant::now();
+        let is_listed = !self.needs_no_grid();
         let Settings { lattice, held, rigid, .. } = &self.settings;
         let (bodies, unbounded) = (Disjoint::new(&mut self.state.bodies), &self.state.unbounded);
         let (room, kernels) = (&mut self.workspace.displaced, self.kernels);
@@ -403,7 +404,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let domain = held.filter(|_| !unbounded.iter().any(|unbounded| unbounded.body == i));
             // SAFETY: every body is listed once.
             let body = unsafe { bodies.get(i) };
-            *displaced = move_rigid_body(kernels, (i, body), (lattice, domain), dt);
+            *displaced = move_rigid_body(kernels, (i, body, is_listed), (lattice, domain), dt);
         });
         let mut found = Found { signal: T::of(self.state.signal.unwrap_or(0.0)), ..Found::NOTHING };
         for (&i, displaced) in rigid.iter().zip(&self.workspace.displaced) {
@@ -460,7 +461,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 /// Moves a body, if it is rigid, with its particles; says what it found, and how many of them changed their cells.
 fn move_rigid_body<T: Laned, const D: usize>(
     kernels: &Kernels<T, D>,
-    (number, body): (usize, &mut Body<T, D>),
+    (number, body, is_listed): (usize, &mut Body<T, D>, bool),
     (lattice, domain): (&Lattice<T, D>, Option<[Vector<T, D>; 2]>),
     dt: T,
 ) -> Option<(Found<T>, u32)> {
@@ -473,7 +474,6 @@ fn move_rigid_body<T: Laned, const D: usize>(
     for p in 0..body.particles.len() {
         let mut particle = body.particles.get(p);
         let (start, half_sides) = body.particles.place(p);
-        let before = (kernels.home)(lattice, (start, half_sides));
         let position = particle.position.space();
         let moved = Vector::of(motion.moved(position, &rotation, dt));
         let kind = if !moved.is_finite() {
@@ -486,7 +486,11 @@ fn move_rigid_body<T: Laned, const D: usize>(
             kernels.escaped((moved, half_sides), lattice, domain).then_some(FaultKind::Escaped)
         };
         body.particles.set(p, &particle);
-        moved_on += u32::from((kernels.home)(lattice, (particle.position, half_sides)) != before);
+        // Without a grid there are no lists of cells.
+        if is_listed {
+            let home = |place| (kernels.home)(lattice, (place, half_sides));
+            moved_on += u32::from(home(particle.position) != home(start));
+        }
         let fault =
             kind.map(|kind| ParticleFault { body: number, particle: p, number: particle.number, kind });
         // No wave runs in a rigid body.
