@@ -129,6 +129,12 @@ fn scenes_are_scenes() {
 }
 
 #[test]
+fn the_readmes_scene_is_the_file() {
+    let read = |path: &str| fs::read_to_string(repository().join(path)).unwrap();
+    assert_eq!(fenced(&read("README.md"), "toml"), [read("scenes/drum.toml")]);
+}
+
+#[test]
 fn links_lead_to_files() {
     for (document, text) in documents() {
         for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link) {
