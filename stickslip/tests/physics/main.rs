@@ -18,6 +18,7 @@ mod damping;
 mod empty_space;
 mod exact_surfaces;
 mod failing_steps;
+mod famous;
 mod fracture;
 mod free_body;
 mod free_rigid;
