@@ -20,7 +20,8 @@ def command() -> str:
 
 
 def flying(dimension: str = "plane-strain", **space: object) -> ss.Scene:
-    """A ball that nothing touches, thrown up and aside."""
+    """A ball that nothing touches, thrown up and aside; on the common grid, if nothing else is said."""
+    space.setdefault("interior", "grid")
     scene = ss.Scene(dimension, 0.1, gravity=(0, -9.81) if dimension != "3d" else (0, -9.81, 0), **space)
     scene.material("rubber", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
     up = (3.0, 1.0) if dimension != "3d" else (3.0, 1.0, 0.0)
@@ -41,7 +42,7 @@ def rings() -> ss.Scene:
 
 def settling() -> ss.Scene:
     """A disk on a rigid floor without bounds."""
-    scene = ss.Scene("plane-strain", 0.025, gravity=(0, -9.81))
+    scene = ss.Scene("plane-strain", 0.025, gravity=(0, -9.81), interior="grid")
     scene.material("rubber", density=1000, neo_hookean=dict(young_modulus=1e6, poisson_ratio=0.3))
     scene.body("disk", material="rubber", shape=ss.disk((0, 0.1), 0.1))
     scene.body("floor", material="rubber", shape=ss.half_space((0, 0), (0, 1)), rigid={})

@@ -37,6 +37,18 @@ def test_a_ball_in_free_flight_goes_where_its_steps_take_it(dimension):
     assert state.mass == pytest.approx(mass.sum(), rel=1e-14) and ledger.momentum.shape == (3,)
 
 
+def test_a_ball_on_a_grid_of_its_own_takes_velocities_and_nothing_else():
+    sim = flying(interior="auto").simulation()
+    ball = sim.bodies["ball"]
+    x, y = ball.position.T
+    ball.set("velocity", np.stack([1 - 2 * y, 2 * x], axis=1))
+    sim.step()
+    assert ball.state.spin[2] == pytest.approx(2.0, rel=1e-6)
+    words = 'found `mass` of body `ball`, which is on a grid of its own; allowed: velocity; or interior = "grid"'
+    with pytest.raises(ValueError, match=words):
+        ball.set("mass", 1.0)
+
+
 def test_the_last_step_of_a_run_ends_where_it_should():
     sim, seen = flying().simulation(), []
     assert sim.run(until="50 ms", every="20 ms", callback=lambda sim: seen.append(sim.time)) is None

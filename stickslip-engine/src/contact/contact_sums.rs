@@ -176,6 +176,11 @@ impl ContactSums {
         for touch in touches {
             let place = self.place(touch.bodies);
             let sum = &mut self.pairs[place].sum;
+            if touch.nodes == 0 && touch.spread.area == 0.0 {
+                // Surfaces that have parted: what friction took last.
+                sum.friction += touch.friction;
+                continue;
+            }
             if sum.last_use != self.uses {
                 sum.close(self.uses);
                 sum.last.duration = duration;

@@ -101,6 +101,17 @@ pub enum WriteError {
         /// The column.
         name: String,
     },
+    /// The body is on a grid of its own, and its other columns follow from where its nodes are.
+    #[error(
+        "found `{name}` of body `{body}`, which is on a grid of its own; allowed: velocity; or interior = \"grid\" in \
+         [space]"
+    )]
+    OwnGrid {
+        /// The column.
+        name: String,
+        /// Name of the body.
+        body: String,
+    },
     /// The body moves as the scene prescribes.
     #[error("body `{body}` is rigid and moves as the scene prescribes; allowed: bodies that forces move")]
     Prescribed {

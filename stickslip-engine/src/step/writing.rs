@@ -30,15 +30,15 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             return Err(WriteError::Shared);
         }
         let reference = self.reference_of(number);
-        // The rest of such a body follows from where its nodes are.
-        if reference.is_some() && name != "velocity" {
-            return Err(WriteError::Fixed { name: name.to_string() });
-        }
         let body = &self.state.bodies[number];
         let found = body.particles.described().find(|(_, column)| column.name == name);
         let (first, column) = found.ok_or_else(|| NoColumn::among(&self.columns(number), name))?;
         if !WRITABLE.contains(&name) {
             return Err(WriteError::Fixed { name: name.to_string() });
+        }
+        if reference.is_some() && name != "velocity" {
+            let body = self.name_of(number).to_string();
+            return Err(WriteError::OwnGrid { name: name.to_string(), body });
         }
         if body.is_rigid() {
             return self.put_rigid(number, name, (values, column.kind.entries(D)));

@@ -53,6 +53,7 @@ fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
     let mean = (Vector::<f64, D>::of(touch.memory.borne) + kept) * 0.5;
     touch.friction = touch.area * touch.stiffness[1] * mean.dot(tangential - kept);
     (touch.memory.stored, touch.memory.borne) = (kept.space(), kept.space());
+    touch.memory.energy = 0.5 * touch.area * touch.stiffness[1] * kept.dot(kept);
     touch.memory.speed = slipped;
     if friction.memory.is_some() {
         touch.memory.remembered = strength;

@@ -82,6 +82,8 @@ pub struct Memory {
     pub stored: [f64; 3],
     /// What of it friction bore before that step [m].
     pub borne: [f64; 3],
+    /// Energy that the layer stored in shear before that step [J].
+    pub energy: f64,
     /// Speed at which it slipped in the step before; zero where it stuck [m/s].
     pub speed: f64,
     /// How long it has touched [s].
@@ -122,6 +124,18 @@ pub enum Met<const D: usize> {
     Deforming(usize, Weights<D>),
     /// A rigid body, by its place in the list of these.
     Rigid(usize),
+}
+
+/// The points that touched and do no longer; both lists are ordered by body, point and partner. What their layers
+/// stored in shear is lost to the bodies, as to friction.
+pub fn parted<'a, const D: usize>(
+    known: &'a [Memory],
+    touches: &'a [Touch<D>],
+) -> impl Iterator<Item = &'a Memory> {
+    let key = |memory: &Memory| (memory.body, memory.point, memory.partner);
+    let touches_yet =
+        move |memory: &Memory| touches.binary_search_by_key(&key(memory), |touch| key(&touch.memory)).is_ok();
+    known.iter().filter(move |memory| memory.energy > 0.0 && !touches_yet(memory))
 }
 
 impl<const D: usize> Touch<D> {

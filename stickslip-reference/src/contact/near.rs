@@ -381,6 +381,7 @@ impl<const D: usize> Point<'_, '_, D> {
             remembered: -1.0,
             stored: [0.0; 3],
             borne: [0.0; 3],
+            energy: 0.0,
             speed: 0.0,
             age: 0.0,
         }

@@ -85,6 +85,7 @@ impl<const D: usize> Meeting<D> {
         let rule = |_: &Touch<D>| friction;
         let all = (&bodies[..], &grounds[..]);
         let mut touches = find(all, &self.known, &|_, _| true, &mut self.neighbours);
+        self.rubbed += parted(&self.known, &touches).map(|memory| memory.energy).sum::<f64>();
         press(&mut bodies, &mut touches, &rule);
         bodies.iter_mut().for_each(|body| body.interior.accelerate(dt, gravity));
         self.known = slip(&bodies, &grounds, (&mut touches, dt), &rule);

@@ -3,7 +3,7 @@
 use super::table::short;
 use super::warning::{Warning, and_more};
 use crate::geometry::{self, Mirror, MirroredShape};
-use crate::scene::{Face, Scene};
+use crate::scene::{Face, Interior, Scene};
 use crate::tensor::Vector;
 use rayon::prelude::*;
 
@@ -24,12 +24,21 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
         .filter(|&(body, thickness)| is_long(scene, body, thickness))
         .collect();
     let (body, thickness) = *thin.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let measured = match scene.interior(body) {
+        Interior::Reference => {
+            "bends too easily: a beam two cells thick deflects by 1.07 of what it should, one of three \
+                                cells by 1.03"
+        }
+        Interior::Grid => {
+            "bends too stiffly: a beam one cell thick deflects by 0.62 of what it should, one of two cells \
+                           by 0.95 (gimp)"
+        }
+    };
     Some(Warning::about(
         format!("bodies[{body}].shape"),
         format!(
-            "thinner than {NEEDED} cells: {} ({} m thick, {:.1} cells) bends too stiffly: a beam one cell thick \
-             deflects by 0.62 of what it should, one of two cells by 0.95 (gimp); cells of at most {} m give it {NEEDED}; \
-             if it does not bend, this does no harm",
+            "thinner than {NEEDED} cells: {} ({} m thick, {:.1} cells) {measured}; cells of at most {} m give it \
+             {NEEDED}; if it does not bend, this does no harm",
             and_more(&format!("`{}`", scene.bodies[body].name), thin.len() - 1),
             short(thickness),
             thickness / cell,

@@ -2,29 +2,40 @@
 
 use crate::contact::BlockSums;
 use crate::tensor::{Vector, cross};
-use stickslip_reference::contact::{Met, Rigid, Touch};
+use stickslip_reference::contact::{Memory, Met, Rigid, Touch};
 
-/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies. Partners have the numbers below
-/// `bodies`, faces of the domain those from there on.
+/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies, and what was lost with those that
+/// have parted. Partners have the numbers below `bodies`, faces of the domain those from there on.
 pub(super) fn book<const D: usize>(
     all: &mut Vec<BlockSums>,
     rigid: &[&dyn Rigid],
-    (touches, dt): (&[Touch<D>], f64),
+    (touches, parted, dt): (&[Touch<D>], &[Memory], f64),
     bodies: usize,
 ) {
     all.clear();
+    for memory in parted {
+        let [body, partner] = [memory.body as usize, memory.partner as usize];
+        // What a face takes is no pair's, as what a body does to itself.
+        let partner = if partner < bodies { partner } else { body };
+        sums_of(all, [body, partner]).friction += memory.energy;
+    }
     for touch in touches {
         let [body, partner] = [touch.memory.body as usize, touch.memory.partner as usize];
         if partner >= bodies {
             continue;
         }
-        let pair = [body.min(partner), body.max(partner)];
-        let place = all.binary_search_by_key(&pair, |sums| sums.bodies).unwrap_or_else(|place| {
-            all.insert(place, BlockSums { bodies: pair, ..BlockSums::default() });
-            place
-        });
-        add(&mut all[place], (touch, dt), body < partner, rigid);
+        add(sums_of(all, [body, partner]), (touch, dt), body < partner, rigid);
     }
+}
+
+/// The sums of a pair of bodies.
+fn sums_of(all: &mut Vec<BlockSums>, [a, b]: [usize; 2]) -> &mut BlockSums {
+    let pair = [a.min(b), a.max(b)];
+    let place = all.binary_search_by_key(&pair, |sums| sums.bodies).unwrap_or_else(|place| {
+        all.insert(place, BlockSums { bodies: pair, ..BlockSums::default() });
+        place
+    });
+    &mut all[place]
 }
 
 fn add<const D: usize>(

@@ -40,7 +40,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Partner, Rigid, STIFFNESS, Touch, find, press, slip,
+    Deforming, Friction, Memory, Met, Neighbours, Partner, Rigid, STIFFNESS, Touch, find, parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -252,6 +252,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         };
         let all = (&bodies[..], &rigid[..]);
         let mut touches = find(all, &state.references.touching, &meet, &mut workspace.neighbours);
+        let parted: Vec<Memory> = parted(&state.references.touching, &touches).copied().collect();
         press(&mut bodies, &mut touches, &rule);
         let mut own = Homeward::default();
         for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {
@@ -313,7 +314,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
         workspace.neighbours.moved((&bodies, &rigid), dt);
-        books::book(&mut workspace.reference_touches, &rigid, (&touches, dt), count);
+        books::book(&mut workspace.reference_touches, &rigid, (&touches, &parted, dt), count);
         workspace.reference_walls.clear();
         if !state.walls.is_empty() {
             let here = |body: usize| !state.bodies[body].particles.is_empty();

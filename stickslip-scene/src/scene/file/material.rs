@@ -5,7 +5,7 @@ use super::read::{Read, check_keys, field, unknown_key};
 use super::text::{Choice, Text, Word};
 use super::{Context, other_laws};
 use crate::material::{
-    ANGLE, Constant, Form, Given, LAWS, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law,
+    ANGLE, Constant, Form, Given, LAWS, Material, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law,
 };
 use crate::outside::OUTSIDE;
 use crate::scene::error::Fault;
@@ -96,6 +96,17 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         };
         Problem { key, found, allowed: bad.allowed, help: None }
     })?;
+    if volume_change == VolumeChange::Averaged && matches!(law, Material::DruckerPrager(_)) {
+        let help =
+            "it opens by particles: with averaged volumes a column of sand lost 40 % of its height at rest";
+        return Err(Problem {
+            key: format!("{}.volume_change", node.key),
+            found: "\"averaged\" of `drucker_prager`".to_string(),
+            allowed: "\"own\"".to_string(),
+            help: Some(help.to_string()),
+        }
+        .into());
+    }
     Ok(NamedMaterial { name: node.name.clone(), density, law, volume_change, thermal_expansion })
 }
 
