@@ -86,9 +86,9 @@ fn a_disk_rolls_and_slides_down_a_slope() {
 }
 
 /// A soft disk rolls on under its weight: nothing brakes it in the continuum but what slips at the ends of the contact.
-/// R/8, 0.086 of the wave speed: over the fourth turn the common grid has left 0.89, and 0.977 is found, 0.012 of which goes as it lands. Energy
-/// is kept whatever the Courant number: points of a surface bounce off and on, and steps that were longer each time they
-/// were off gave +60 % at 0.45.
+/// R/8, 0.086 of the wave speed: over the fourth turn the common grid has left 0.89, and 0.977 is found here, 0.012 of
+/// which goes as it lands. Energy is kept whatever the Courant number: points of a surface bounce off and on, and steps
+/// that were longer each time they were off gave +60 % at 0.45.
 #[test]
 fn a_disk_rolls_on() {
     let speed = 0.0862 * WAVE;
