@@ -52,6 +52,11 @@ pub struct BlockSums {
 }
 
 impl BlockSums {
+    /// Whether the surfaces have parted, and it is what friction took last.
+    pub fn is_of_parted(&self) -> bool {
+        self.nodes == 0 && self.spread.area == 0.0
+    }
+
     /// Lists the sums of impulses that follow one another block by block, ordered by pair and block; `works` tells what
     /// friction and bonds took by each [J].
     pub fn list<'a, T: Real, const D: usize>(

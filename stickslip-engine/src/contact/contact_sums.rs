@@ -176,8 +176,7 @@ impl ContactSums {
         for touch in touches {
             let place = self.place(touch.bodies);
             let sum = &mut self.pairs[place].sum;
-            if touch.nodes == 0 && touch.spread.area == 0.0 {
-                // Surfaces that have parted: what friction took last.
+            if touch.is_of_parted() {
                 sum.friction += touch.friction;
                 continue;
             }

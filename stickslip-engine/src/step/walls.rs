@@ -1,10 +1,11 @@
 //! The verb that books reactions of the domain's faces, where the scene asks for them.
 
 use super::Engine;
+use crate::boundary::Wall;
 use crate::exact::ExactSum;
-use crate::grid::nodes_per_block;
+use crate::grid::{Lattice, nodes_per_block};
 use crate::lanes::Laned;
-use crate::tensor::{Vector, cross};
+use crate::tensor::{Real, Vector, cross};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -20,11 +21,22 @@ pub struct WallSums {
     pub moment: [f64; 3],
 }
 
+/// The middle of a face of the domain between these corners [m].
+pub(super) fn middle<T: Real, const D: usize>(
+    wall: &Wall,
+    lattice: &Lattice<T, D>,
+    [min, max]: [Vector<T, D>; 2],
+) -> [f64; 3] {
+    let mut middle = ((min + max) * T::HALF).space();
+    middle[wall.axis] = lattice.position([wall.node; D])[wall.axis].f64();
+    middle
+}
+
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// Books what bodies did to the faces of the domain in the step.
     pub(super) fn account_walls(&mut self, dt: T) {
         let bodies = self.state.bodies.len();
-        let (Some([min, max]), false) = (self.settings.domain, self.state.walls.is_empty()) else { return };
+        let (Some(corners), false) = (self.settings.domain, self.state.walls.is_empty()) else { return };
         let (lattice, walls) = (&self.settings.lattice, &self.settings.walls);
         let position =
             |place: [i32; 3]| Vector(lattice.position(std::array::from_fn::<_, D, _>(|i| place[i])).space());
@@ -37,11 +49,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             if all[node.body as usize].is_rigid() || !active.books(block) {
                 return;
             }
-            let wall = &walls[node.wall];
-            let mut middle = ((min + max) * T::HALF).space();
-            let mut face = node.place;
-            face[wall.axis] = wall.node;
-            middle[wall.axis] = position(face).0[wall.axis];
+            let middle = middle(&walls[node.wall], lattice, corners);
             let moment = cross((position(node.place) - Vector(middle)).0, impulse);
             let sums = booked.entry(node.wall * bodies + node.body as usize).or_default();
             sums.iter_mut().zip(impulse.into_iter().chain(moment)).for_each(|(sum, x)| sum.add(-x));

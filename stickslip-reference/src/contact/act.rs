@@ -13,7 +13,7 @@ pub fn press<const D: usize>(
 ) {
     for touch in touches {
         bear(touch, &rule(touch));
-        let force = (touch.normal * touch.pressure() + touch.traction) * touch.area;
+        let force = touch.force();
         let body = &mut bodies[touch.side];
         body.interior.push(&body.surface[touch.memory.point as usize].weights, force);
         if let Met::Deforming(b, weights) = &touch.met {

@@ -90,6 +90,13 @@ pub struct Memory {
     pub age: f64,
 }
 
+impl Memory {
+    /// Body, point and partner, by which points that touch are ordered.
+    pub fn key(&self) -> (u32, u32, u32) {
+        (self.body, self.point, self.partner)
+    }
+}
+
 /// A point that touches, in a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch<const D: usize> {
@@ -132,9 +139,8 @@ pub fn parted<'a, const D: usize>(
     known: &'a [Memory],
     touches: &'a [Touch<D>],
 ) -> impl Iterator<Item = &'a Memory> {
-    let key = |memory: &Memory| (memory.body, memory.point, memory.partner);
     let touches_yet =
-        move |memory: &Memory| touches.binary_search_by_key(&key(memory), |touch| key(&touch.memory)).is_ok();
+        |memory: &Memory| touches.binary_search_by_key(&memory.key(), |touch| touch.memory.key()).is_ok();
     known.iter().filter(move |memory| memory.energy > 0.0 && !touches_yet(memory))
 }
 
@@ -144,9 +150,14 @@ impl<const D: usize> Touch<D> {
         self.stiffness[0] * (-self.gap).max(0.0)
     }
 
+    /// Force on the body [N].
+    pub fn force(&self) -> Vector<f64, D> {
+        (self.normal * self.pressure() + self.traction) * self.area
+    }
+
     /// Energy that the layer stores [J].
     pub fn energy(&self) -> f64 {
-        let [pressure, shear] = [self.pressure(), self.traction.norm()];
-        0.5 * self.area * (pressure * pressure / self.stiffness[0] + shear * shear / self.stiffness[1])
+        let pressure = self.pressure();
+        0.5 * self.area * pressure * pressure / self.stiffness[0] + self.memory.energy
     }
 }

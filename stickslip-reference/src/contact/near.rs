@@ -159,7 +159,7 @@ impl<const D: usize> Neighbours<D> {
         let known = &known[known.partition_point(|memory| memory.body < number)..];
         let known = &known[..known.partition_point(|memory| memory.body == number)];
         let is_known = |point: u32, partner: usize| {
-            known.binary_search_by_key(&(number, point, partner as u32), key).is_ok()
+            known.binary_search_by_key(&(number, point, partner as u32), Memory::key).is_ok()
         };
         let point =
             |point: u32| Point { bodies, a, number: point as usize, at: place(&bodies[a], point as usize) };
@@ -189,7 +189,7 @@ impl<const D: usize> Neighbours<D> {
                 touches.extend(point.in_rigid((r, rigids[r]), point.fresh(rigids[r].body())));
             }
         }
-        touches.sort_by_key(|touch| key(&touch.memory));
+        touches.sort_by_key(|touch| touch.memory.key());
         touches
     }
 }
@@ -320,10 +320,6 @@ fn place<const D: usize>(body: &Deforming<'_, D>, point: usize) -> Vector<f64, D
 fn are_apart<const D: usize>(body: &Deforming<'_, D>, points: [u32; 2]) -> bool {
     let [one, other] = points.map(|point| body.surface[point as usize].place);
     (one - other).norm() > APART * body.interior.form.cell
-}
-
-fn key(memory: &Memory) -> (u32, u32, u32) {
-    (memory.body, memory.point, memory.partner)
 }
 
 /// How far apart two places of one body must be, undeformed, to touch each other: functions tie what is nearer together

@@ -75,8 +75,8 @@ impl<T: Laned, const D: usize> Work for Visit<'_, T, D> {
     /// One particle at a time on x86-64: laws for several that few processors need would be a tenth of the program.
     #[cfg(all(target_arch = "x86_64", not(portable_lanes)))]
     fn run_anywhere(mut self) {
-        let form = self.interior.form.clone();
-        form.cells.iter().enumerate().for_each(|(number, cell)| self.one_by_one(number, cell));
+        let (constants, form) = (self.constants(), self.interior.form.clone());
+        form.cells.iter().enumerate().for_each(|(number, cell)| self.one_by_one(&constants, (number, cell)));
     }
 }
 
@@ -117,21 +117,20 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 Members::copied::<V>(&columns, &index[..count], &verbs, &mut copies)
             };
             if self.lanes(&constants, (number, cell, 0), &members).is_err() {
-                self.one_by_one(number, cell);
+                self.one_by_one(&self.constants(), (number, cell));
             }
         }
     }
 
     /// Takes the particles of a cell one by one, and finds out what is wrong with whom.
     #[inline(never)]
-    fn one_by_one(&mut self, number: usize, cell: &Cell) {
-        let constants = self.constants::<Pack<T, 1>>();
+    fn one_by_one(&mut self, constants: &Constants<Pack<T, 1>>, (number, cell): (usize, &Cell)) {
         let (columns, all) = (self.columns, cell.first..cell.first + cell.count);
         for (lane, particle) in all.enumerate() {
             let index = [particle];
             let members = Members::in_a_row(&columns, &index);
             let one = Cell { first: particle, count: 1, ..*cell };
-            if let Err(kind) = self.lanes(&constants, (number, &one, lane), &members) {
+            if let Err(kind) = self.lanes(constants, (number, &one, lane), &members) {
                 let particle = particle as usize;
                 let fault = ParticleFault { body: self.body, particle, number: particle as u32, kind };
                 *self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });

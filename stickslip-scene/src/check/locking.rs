@@ -43,20 +43,19 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
 /// Above this Poisson's ratio what bends is too stiff already, where few cells lie across it.
 const BENDS_STIFFLY: f64 = 0.4;
 /// The same of bodies on grids of their own: a clamped beam of length 8 and thickness 1 in plane strain sags under its
-/// weight, of what it does by 16 cells, by 0.986 at 0.45 with two cells across, and at 0.49 by 0.79, 0.86, 0.93 and 0.98
-/// with two, three, four and eight.
+/// weight, of what it does by 16 cells, by 0.986 at 0.45 with two cells across, and at 0.49 by 0.79, 0.86, 0.93 and
+/// 0.98 with two, three, four and eight.
 const BENDS_STIFFLY_ON_OWN_GRID: f64 = 0.45;
 /// Cells across a body from which on that is a matter of per cents up to a ratio of 0.49.
 const ENOUGH: f64 = 8.0;
 
 /// Bodies of few cells across and with a Poisson's ratio from 0.4 to 0.49, which do not bend as they should.
 pub(super) fn bending(scene: &Scene) -> Option<Warning> {
-    let plane_stress = scene.dimension == Dimension::PlaneStress;
-    let by_splines = matches!(scene.discretization.basis, BasisKind::Spline | BasisKind::Cubic);
-    let on_own_grid = |body: usize| scene.interior(body) == Interior::Reference;
-    if plane_stress {
+    if scene.dimension == Dimension::PlaneStress {
         return None;
     }
+    let by_splines = matches!(scene.discretization.basis, BasisKind::Spline | BasisKind::Cubic);
+    let on_own_grid = |body: usize| scene.interior(body) == Interior::Reference;
     let cell = scene.discretization.cell;
     let material = |body: usize| &scene.materials[scene.bodies[body].material];
     let ratio = |body: usize| material(body).law.elastic().poisson_ratio();
@@ -82,15 +81,15 @@ pub(super) fn bending(scene: &Scene) -> Option<Warning> {
         }
         false => {
             "a beam of four cells sags by 0.93 of what it should at 0.4, by 0.89 at 0.45 and by 0.64 at 0.49, one of \
-             eight by 0.83 at 0.49 (gimp); take volume_change = \"averaged\" for its material (0.91), smaller cells, or \
-             space.basis = \"spline\" (0.97 at 0.49), by which what rolls or swings for long loses its motion"
+             eight by 0.83 at 0.49 (gimp); take volume_change = \"averaged\" for its material (0.91), smaller cells, \
+             or space.basis = \"spline\" (0.97 at 0.49), by which what rolls or swings for long loses its motion"
         }
     };
     Some(Warning::about(
         format!("bodies[{body}].material"),
         format!(
-            "a Poisson's ratio of {:.3} with {:.1} cells across: {} bends too stiffly; {measured}; if it does not bend, \
-             this does no harm",
+            "a Poisson's ratio of {:.3} with {:.1} cells across: {} bends too stiffly; {measured}; if it does not \
+             bend, this does no harm",
             ratio(body),
             thickness / cell,
             and_more(&format!("`{}`", scene.bodies[body].name), thin.len() - 1),

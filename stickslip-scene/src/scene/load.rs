@@ -172,18 +172,20 @@ mod tests {
         assert_eq!((scene.outputs.tables, scene.outputs.particles), (0.005, Some(0.05)));
     }
 
-    /// A named shape is what it is where it is written out.
     #[test]
     fn soil_that_opens_has_volumes_of_its_own() {
         let text = "time.end = 1\nspace = { dimension = 'plane-strain', cell = 0.1 }\n[materials.sand]\ndensity = 1\n\
                     volume_change = 'averaged'\n\
-                    drucker_prager = { young_modulus = 1, poisson_ratio = 0.3, cohesion = 0, friction_angle = '30 deg' }\n\
+                    [materials.sand.drucker_prager]\nyoung_modulus = 1\npoisson_ratio = 0.3\n\
+                    friction_angle = '30 deg'\n\
                     [[bodies]]\nname = 'a'\nmaterial = 'sand'\nshape.ball = { center = [0, 0], radius = 1 }\n";
         let error = parse("a.toml", text, &[]).expect_err("averaged").to_string();
-        let wanted = "a.toml:5:17: materials.sand.volume_change: found \"averaged\" of `drucker_prager`; allowed: \"own\"";
+        let wanted = "a.toml:5:17: materials.sand.volume_change: found \"averaged\" of `drucker_prager`; allowed: \
+                      \"own\"";
         assert!(error.starts_with(wanted), "{error}");
     }
 
+    /// A named shape is what it is where it is written out.
     #[test]
     fn shapes_have_names() {
         let text = MINIMAL.replace(

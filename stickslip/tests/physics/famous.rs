@@ -238,7 +238,11 @@ fn a_column_of_sand_collapses() {
         time = {{ end = 1, transfer = "apic" }}
         [materials.sand]
         density = 1600
-        drucker_prager = {{ young_modulus = 1e6, poisson_ratio = 0.3, friction_angle = "36.9 deg", fit = "plane-strain" }}
+        [materials.sand.drucker_prager]
+        young_modulus = 1e6
+        poisson_ratio = 0.3
+        friction_angle = "36.9 deg"
+        fit = "plane-strain"
         [space]
         dimension = "plane-strain"
         interior = "grid"

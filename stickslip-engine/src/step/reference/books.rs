@@ -4,8 +4,8 @@ use crate::contact::BlockSums;
 use crate::tensor::{Vector, cross};
 use stickslip_reference::contact::{Memory, Met, Rigid, Touch};
 
-/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies, and what was lost with those that
-/// have parted. Partners have the numbers below `bodies`, faces of the domain those from there on.
+/// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies, and what was lost with those
+/// that have parted. Partners have the numbers below `bodies`, faces of the domain those from there on.
 pub(super) fn book<const D: usize>(
     all: &mut Vec<BlockSums>,
     rigid: &[&dyn Rigid],

@@ -22,6 +22,7 @@ mod walls;
 pub(super) use springs::center as center_of;
 
 use super::Engine;
+use super::walls::middle;
 use crate::body::{Body, Particle, Totals};
 use crate::contact::Rules;
 use crate::door::{RestoreError, SavedState, StepError};
@@ -71,13 +72,13 @@ pub struct References<const D: usize> {
     pub nodes: Vec<Interior<D>>,
     /// What is known of points that touch.
     pub touching: Vec<Memory>,
-    /// What each body's contact leaves behind.
-    pub left: Vec<Left>,
+    /// What each body's part of the layers is.
+    pub layers: Vec<Layers>,
 }
 
-/// What the contact of a body leaves behind in a step.
+/// The layers of a body's contact after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Left {
+pub struct Layers {
     /// Energy that its part of the layers stores [J].
     energy: f64,
     /// For how long its steps are as short as in contact yet [s]: a surface that bounces off and on under steps that
@@ -93,7 +94,7 @@ pub(crate) struct SavedNodes {
     places: Vec<f64>,
     velocities: Vec<f64>,
     forces: Vec<f64>,
-    left: Left,
+    layers: Layers,
 }
 
 /// What a rank tells the others in a step.
@@ -297,19 +298,19 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             acts.then(|| springs::pull((spring, sums.way), places, (&state.bodies, &mut bodies), dt))
         });
         workspace.springs.own = springs.collect();
-        let left = &mut state.references.left;
-        left.resize(bodies.len(), Left::default());
-        left.iter_mut().for_each(|left| *left = Left { energy: 0.0, lingers: (left.lingers - dt).max(0.0) });
-        let mut leave = |side: usize, energy: f64| {
-            left[side].energy += energy;
-            left[side].lingers = settings.references[side].transit;
+        let layers = &mut state.references.layers;
+        layers.resize(bodies.len(), Layers::default());
+        layers.iter_mut().for_each(|own| *own = Layers { energy: 0.0, lingers: (own.lingers - dt).max(0.0) });
+        let mut store = |side: usize, energy: f64| {
+            layers[side].energy += energy;
+            layers[side].lingers = settings.references[side].transit;
         };
         for touch in &touches {
             match touch.met {
                 Met::Deforming(b, _) => {
-                    [touch.side, b].iter().for_each(|&side| leave(side, 0.5 * touch.energy()))
+                    [touch.side, b].iter().for_each(|&side| store(side, 0.5 * touch.energy()))
                 }
-                Met::Rigid(_) => leave(touch.side, touch.energy()),
+                Met::Rigid(_) => store(touch.side, touch.energy()),
             }
         }
         state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
@@ -330,9 +331,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The closed faces of the domain.
     fn rigid_walls(&self) -> Vec<RigidWall> {
         let Some(corners) = self.settings.domain else { return Vec::new() };
-        let (corners, bodies) = (corners.map(Vector::space), self.state.bodies.len());
-        let walls = self.settings.walls.iter().enumerate();
-        walls.map(|(number, wall)| RigidWall::new(wall, (number, bodies), corners)).collect()
+        let (lattice, bodies) = (&self.settings.lattice, self.state.bodies.len());
+        let walls = self.settings.walls.iter().zip(bodies..);
+        walls.map(|(wall, number)| RigidWall::new(number, wall, middle(wall, lattice, corners))).collect()
     }
 
     /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
@@ -365,7 +366,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let of_body = |place: usize| {
             let (own, wave) = (&self.settings.references[place], found[place].signal.f64());
             let alone = wave * (1.0 / LARGER_STEPS).max(courant / ALONE);
-            if self.state.references.left[place].lingers == 0.0 {
+            if self.state.references.layers[place].lingers == 0.0 {
                 return alone;
             }
             alone.max(wave.max(own.wave) * (USUAL / SAFE).max(courant) / own.courant)
@@ -423,7 +424,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let Some(place) = self.reference_of(body) else { return totals };
         let nodes = &self.state.references.nodes[place];
         totals.kinetic = nodes.kinetic();
-        totals.strain += self.state.references.left.get(place).map_or(0.0, |left| left.energy);
+        totals.strain += self.state.references.layers.get(place).map_or(0.0, |layers| layers.energy);
         totals.momentum = nodes.momentum().space();
         let mut sums = [[0.0; 3]; 2];
         for ((mass, place), velocity) in nodes.masses.iter().zip(&nodes.places).zip(&nodes.velocities) {
@@ -440,14 +441,14 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The nodes of these bodies as data, and the points that touch. Of several ranks the first knows the forces on
     /// all.
     pub(super) fn saved_nodes(&self) -> (Vec<SavedNodes>, Vec<Memory>) {
-        let References { nodes, touching, left } = &self.state.references;
+        let References { nodes, touching, layers } = &self.state.references;
         let mut saved: Vec<SavedNodes> = (nodes.iter().enumerate())
             .map(|(place, nodes)| SavedNodes {
                 body: self.settings.references[place].body,
                 places: flat(&nodes.places),
                 velocities: flat(&nodes.velocities),
                 forces: flat(&nodes.forces),
-                left: left.get(place).copied().unwrap_or_default(),
+                layers: layers.get(place).copied().unwrap_or_default(),
             })
             .collect();
         if self.among.is_some() && !saved.is_empty() {
@@ -512,17 +513,17 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             Some(Memory { body: body?, partner: partner?, ..*memory })
         };
         carried.touching = saved.touching.iter().filter_map(here).collect();
-        carried.touching.sort_by_key(|memory| (memory.body, memory.point, memory.partner));
+        carried.touching.sort_by_key(Memory::key);
         Ok(carried)
     }
 
     /// Begins with these nodes.
     pub(super) fn begin_nodes(&mut self, carried: CarriedNodes) {
-        let References { nodes, touching, left } = &mut self.state.references;
-        left.resize(nodes.len(), Left::default());
+        let References { nodes, touching, layers } = &mut self.state.references;
+        layers.resize(nodes.len(), Layers::default());
         for (place, saved) in &carried.nodes {
             saved.put_in(&mut nodes[*place]);
-            left[*place] = saved.left;
+            layers[*place] = saved.layers;
         }
         *touching = carried.touching;
         self.workspace.neighbours = Neighbours::default();
@@ -586,7 +587,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// Goes on with these nodes.
     pub(super) fn take_up_nodes(&mut self, saved: &[SavedNodes], touching: Vec<Memory>) {
         self.state.references.nodes.iter_mut().zip(saved).for_each(|(nodes, saved)| saved.put_in(nodes));
-        self.state.references.left = saved.iter().map(|saved| saved.left).collect();
+        self.state.references.layers = saved.iter().map(|saved| saved.layers).collect();
         self.state.references.touching = touching;
     }
 }
