@@ -250,8 +250,8 @@ impl<T: Number> Law<T> for DruckerPrager<T> {
 mod tests {
     use super::*;
     use crate::material::soil::tests::{
-        Chance, State, along_axes, in_single_precision, ledger, only_turns, plates_have_a_thickness, pressed,
-        random_paths, stiffest_on_paths,
+        Chance, State, along_axes, in_single_precision, ledger, noise_leaves_no_gap, only_turns,
+        plates_have_a_thickness, pressed, random_paths, stiffest_on_paths,
     };
     use crate::material::tests::{hooke, motion_of, sample_gradients};
     use crate::material::{LAWS, Material, NoStretch};
@@ -431,6 +431,11 @@ mod tests {
         state = state.moved(&law, along_axes([-1e-3; 3]));
         assert!((state.p() / 10e3 - 1.0).abs() < 1e-2, "{}", state.p());
         assert!(state.history[1].abs() < 1e-12);
+    }
+
+    #[test]
+    fn noise_does_not_open_for_good_what_is_pressed() {
+        noise_leaves_no_gap(&law([30.0, 0.0], 0.0, Fit::Outside), ELASTIC.bulk_modulus);
     }
 
     /// The stiffest that a small step finds, over what is said: below one, and not by much.

@@ -323,6 +323,29 @@ pub(super) mod tests {
         }
     }
 
+    /// Pressed soil that noise shakes, in shape and volume, while it is compressed by 1e-3 in all: at the end there is
+    /// no gap, and the pressure is K times the volume strain. The noise is ten times what the pressure compresses, so
+    /// on the way the soil opens again and again.
+    pub fn noise_leaves_no_gap<L: Law<f64, History = [f64; 3]>>(law: &L, bulk_modulus: f64) {
+        let (steps, compression, borne) = (4000, 1e-3, 2e-4);
+        for seed in 1..=20 {
+            let mut chance = Chance::new(seed);
+            let mut state: State<[f64; 3]> = State::under(Symmetric::isotropic(-borne * bulk_modulus));
+            let mut opened = 0;
+            for step in 1..=steps {
+                let noise = if step == steps { 0.0 } else { 2e-3 * chance.next() };
+                let volume = (noise - compression * f64::from(step) / f64::from(steps)).exp();
+                let shape = chance.increment(1e-3);
+                let wanted = volume / state.motion.jacobian / shape.det();
+                state = state.moved(law, shape * wanted.cbrt());
+                opened += i32::from(state.history[1] > 0.0);
+            }
+            assert!((steps / 20..steps / 2).contains(&opened), "{seed}: open in {opened} steps");
+            let exact = (borne + compression) * bulk_modulus;
+            assert!(state.history[1] == 0.0 && (state.p() / exact - 1.0).abs() < 1e-3, "{seed}: {state:?}");
+        }
+    }
+
     /// A turn leaves energies, history and the stress in the material's frame alone.
     pub fn only_turns<L: Law<f64>>(law: &L, before: &State<L::History>) {
         let q = rotation();

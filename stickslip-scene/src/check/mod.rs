@@ -29,6 +29,7 @@ mod rigid_pairs;
 mod rules;
 mod settings;
 mod shapes;
+mod soil;
 mod springs;
 mod table;
 mod thickness;
