@@ -5,7 +5,7 @@ mod pass;
 pub use pass::{Straining, strain};
 
 use std::sync::Arc;
-use stickslip_mechanics::geometry::form::{Form, Weights};
+use stickslip_mechanics::geometry::form::{Form, Reaction, Weights};
 use stickslip_mechanics::tensor::Vector;
 
 /// The nodes of a body. Those that follow others have the places and velocities of what they follow.
@@ -19,8 +19,11 @@ pub struct Interior<const D: usize> {
     pub places: Vec<Vector<f64, D>>,
     /// Their velocities half a step before these places [m/s].
     pub velocities: Vec<Vector<f64, D>>,
-    /// Forces on them [N].
+    /// Forces on them [N]. Those on followers are given to what they follow once a step, when all that acts is known.
     pub forces: Vec<Vector<f64, D>>,
+    /// The same before that, of bodies that faces of the domain hold.
+    ungathered: Vec<Vector<f64, D>>,
+    density: f64,
 }
 
 /// What of a field is left when it is fitted, and steps to it at most.
@@ -39,21 +42,27 @@ impl<const D: usize> Interior<D> {
             masses: form.node_volumes.iter().map(|volume| volume * density).collect(),
             velocities: places.iter().map(|place| velocity(*place)).collect(),
             forces: vec![Vector::ZERO; places.len()],
+            ungathered: Vec::new(),
+            density,
             places,
             form,
         };
+        interior.form.hold(&mut interior.velocities);
         interior.follow();
         interior
     }
 
     /// Followers take the places and velocities of what they follow: x_s = sum e x_m.
     pub fn follow(&mut self) {
-        self.form.follow(&mut self.places);
+        self.form.follow_places(&mut self.places);
         self.form.follow(&mut self.velocities);
     }
 
     /// Gives the forces on followers to those that they follow: f_m += e f_s.
     pub fn gather_forces(&mut self) {
+        if self.form.held.is_some() {
+            self.ungathered.clone_from(&self.forces);
+        }
         self.form.gather(&mut self.forces);
     }
 
@@ -74,12 +83,11 @@ impl<const D: usize> Interior<D> {
             form.gather(&mut sums);
             sums
         };
-        let shared = scattered(&|_| Vector([1.0; D]));
         let scaled = |sums: &[Vector<f64, D>]| -> Vec<Vector<f64, D>> {
-            let scale = |(sum, share): (&Vector<f64, D>, &Vector<f64, D>)| {
-                if share[0].abs() > 0.0 { *sum * (1.0 / share[0].abs()) } else { Vector::ZERO }
+            let scale = |(sum, &volume): (&Vector<f64, D>, &f64)| {
+                if volume > 0.0 { *sum * (1.0 / volume) } else { Vector::ZERO }
             };
-            sums.iter().zip(&shared).map(scale).collect()
+            sums.iter().zip(&form.node_volumes).map(scale).collect()
         };
         let product = |a: &[Vector<f64, D>], b: &[Vector<f64, D>]| -> f64 {
             a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
@@ -109,29 +117,52 @@ impl<const D: usize> Interior<D> {
         found
     }
 
-    /// v += dt (f / M + g), and followers after it.
-    pub fn accelerate(&mut self, dt: f64, gravity: Vector<f64, D>) {
-        for node in 0..self.masses.len() {
-            if self.masses[node] > 0.0 {
-                self.velocities[node] += (self.forces[node] * (1.0 / self.masses[node]) + gravity) * dt;
-            }
+    /// v += dt (f / M + g), and followers after it. Supports hold nodes with inertia of theirs beside their own [kg];
+    /// `inertia` is empty where there is no support.
+    pub fn accelerate(&mut self, dt: f64, gravity: Vector<f64, D>, inertia: &[Vector<f64, D>]) {
+        for (node, &mass) in self.masses.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
+            let force = self.forces[node] + self.weight(node, gravity);
+            self.velocities[node] += match inertia.get(node) {
+                None => force * (dt / mass),
+                Some(inertia) => Vector::from_fn(|i| force[i] / (mass + inertia[i])) * dt,
+            };
         }
         self.follow();
     }
 
-    /// The same of nodes that supports hold, with inertia of theirs beside its own [kg]; none where there is no
-    /// support.
-    pub fn accelerate_with(&mut self, dt: f64, gravity: Vector<f64, D>, inertia: &[Vector<f64, D>]) {
-        if inertia.is_empty() {
-            return self.accelerate(dt, gravity);
+    /// Weight of a node: images pull the other way across a mirror [N].
+    fn weight(&self, node: usize, gravity: Vector<f64, D>) -> Vector<f64, D> {
+        let net = self.form.net_volume(node);
+        Vector::from_fn(|k| gravity[k] * net[k] * self.density)
+    }
+
+    /// What the faces that hold a body did to it in a step that has accelerated it from these velocities [m/s].
+    pub fn reactions(
+        &self,
+        before: &[Vector<f64, D>],
+        gravity: Vector<f64, D>,
+        inertia: &[Vector<f64, D>],
+        dt: f64,
+    ) -> Vec<Reaction<D>> {
+        if self.form.held.is_none() {
+            return Vec::new();
         }
-        for (node, (&mass, inertia)) in self.masses.iter().zip(inertia).enumerate() {
-            if mass > 0.0 {
-                let force = self.forces[node] + gravity * mass;
-                self.velocities[node] += Vector::from_fn(|i| force[i] / (mass + inertia[i])) * dt;
-            }
-        }
-        self.follow();
+        let changes: Vec<_> =
+            self.velocities.iter().zip(before).map(|(now, before)| *now - *before).collect();
+        self.form.reactions(
+            (&self.places, &changes),
+            (&self.ungathered, inertia),
+            (self.density, gravity),
+            dt,
+        )
+    }
+
+    /// Masses [kg], places and velocities of all that moves with nodes, of half a model that half alone.
+    pub fn carried(&self) -> impl Iterator<Item = (f64, Vector<f64, D>, Vector<f64, D>)> {
+        self.form.carried().map(|carried| {
+            let place = carried.turned.of(self.places[carried.node]) + carried.shift;
+            (self.density * carried.volume, place, carried.turned.of(self.velocities[carried.node]))
+        })
     }
 
     /// x += dt v, and followers after it.
@@ -179,7 +210,7 @@ impl<const D: usize> Interior<D> {
 
     /// Momentum [N s].
     pub fn momentum(&self) -> Vector<f64, D> {
-        self.masses.iter().zip(&self.velocities).map(|(mass, velocity)| *velocity * *mass).sum()
+        self.carried().map(|(mass, _, velocity)| velocity * mass).sum()
     }
 
     /// Kinetic energy [J].

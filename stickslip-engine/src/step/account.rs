@@ -172,7 +172,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 
     /// Whether a step looks how far its forces are from balance.
-    fn measures_balance(&self) -> bool {
+    pub(super) fn measures_balance(&self) -> bool {
         self.settings.damping.acts() || self.settings.time.relax.is_some()
     }
 

@@ -2,7 +2,7 @@
 
 use super::among::{Find, Kinds, Look, SharedOut, Walked, share_out, walk, walk_together};
 use super::mechanism::{JointSums, RigidSurfaces};
-use super::reference::{ReferenceBody, References, is_reference};
+use super::reference::{ReferenceBody, References, is_reference, lengths};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
 use super::together::over_arrays;
@@ -331,6 +331,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 free: free_bodies(scene),
                 rigid,
                 references,
+                lengths: lengths(scene),
                 tables,
                 together,
                 averages_volume,

@@ -40,7 +40,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let mass = motion.as_free().map_or(0.0, |free| free.mass);
             sums.iter_mut().zip(motion.velocity()).for_each(|(sum, v)| sum.add(mass * v));
         }
-        for body in self.bodies_here().map(|body| &self.state.bodies[body]).filter(|body| !body.is_rigid()) {
+        // Of several ranks one has the particles of a body on a grid of its own.
+        let own = self.settings.references.iter().zip(&self.state.references.nodes);
+        for (_, nodes) in own.filter(|(own, _)| !self.state.bodies[own.body].particles.is_empty()) {
+            for (mass, velocity) in nodes.masses.iter().zip(&nodes.velocities) {
+                sums.iter_mut().zip(velocity.0).for_each(|(sum, v)| sum.add(mass * v));
+            }
+        }
+        let on_grid =
+            |&body: &usize| !self.state.bodies[body].is_rigid() && self.reference_of(body).is_none();
+        for body in self.bodies_here().filter(on_grid).map(|body| &self.state.bodies[body]) {
             parts.clear();
             parts.resize_with(body.particles.len().div_ceil(PART), || {
                 std::array::from_fn(|_| ExactSum::default())

@@ -111,7 +111,7 @@ pub struct Engine<T: 'static, const D: usize> {
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
-        self.step_references(dt)?; //                             bodies on grids of their own
+        self.push_references(dt)?; //                             bodies on grids of their own: v += dt (f / m + g)
         match self.settings.time.stress_update {
             StressUpdate::First => self.update_stress_first(dt),
             StressUpdate::Last => self.update_stress_last(dt),
@@ -143,6 +143,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pull_springs(dt, Some(dt)); //                       between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
+        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.exchange_velocities(); //                            v~ that was kept, to move by; v~ of now, for dv
         self.damp(dt); //                                         of v~ for dv
         self.update_velocities_and_positions(dt)?; //             G2P: v_p += dv, x += v~ dt
@@ -171,6 +172,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pull_springs(dt, None); //                           between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
+        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.keep_velocities(); //                                v~, for dv
         self.damp(dt); //                                         of v~ for dv
         self.average_dilatation(dt); //                           of nearly incompressible bodies
@@ -202,6 +204,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pull_springs(dt, None); //                           between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
+        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.keep_velocities_and_clear_momentum(); //             v~, for dv; p = 0
         self.damp(dt); //                                         of v~ for dv
         self.update_particle_velocities(dt)?; //                  G2P: v_p += dv; P2G: p

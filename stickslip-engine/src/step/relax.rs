@@ -1,4 +1,8 @@
-//! Dynamic relaxation by kinetic damping: the state at rest, looked for by motion.
+//! Dynamic relaxation: the state at rest, looked for by motion.
+//!
+//! Where all bodies that deform are on grids of their own, forces follow from places alone, and a viscous force brings
+//! them to rest that is critical for the slowest swing which there still is ([`super::reference`]). Else there is noise
+//! of particles that change their cells, and damping is kinetic.
 //!
 //! Bodies that are let go swing about the state at rest, and pass it when they are fastest. Where their kinetic energy
 //! has passed a peak they are stopped, and let go again from there (Cundall 1982, Adaptive density-scaling for
@@ -19,6 +23,7 @@ use super::Engine;
 use crate::lanes::Laned;
 use crate::rigid::RigidMotion;
 use crate::scene;
+use crate::tensor::Vector;
 use crate::threads::each;
 use serde::{Deserialize, Serialize};
 use std::sync::PoisonError;
@@ -41,12 +46,22 @@ pub struct RelaxationProgress {
     pub since: f64,
     /// Whether they are at rest.
     pub at_rest: bool,
+    /// How long the last step was [s].
+    #[serde(default)]
+    pub last_step: f64,
 }
 
 impl Default for RelaxationProgress {
     /// Nothing is known yet.
     fn default() -> Self {
-        RelaxationProgress { residual: 1.0, kinetic: [0.0; 2], peaks: 0, since: 0.0, at_rest: false }
+        RelaxationProgress {
+            residual: 1.0,
+            kinetic: [0.0; 2],
+            peaks: 0,
+            since: 0.0,
+            last_step: 0.0,
+            at_rest: false,
+        }
     }
 }
 
@@ -74,13 +89,15 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
     }
 
-    /// Stops the bodies where their kinetic energy has passed a peak after a step, and says whether they are at rest.
+    /// Stops bodies on the common grid, and those beside them, where their kinetic energy has passed a peak after a step,
+    /// and says whether all are at rest.
     pub(super) fn relax(&mut self, dt: f64) {
         let Some(scene::Relaxation { residual }) = self.settings.time.relax else { return };
         let start = Instant::now();
         self.state.relaxation.since += dt;
+        self.state.relaxation.last_step = dt;
         let [now, before] = self.state.relaxation.kinetic;
-        if now < before {
+        if now < before && !self.all_have_grids() {
             self.stop();
         }
         let moved = |velocity: [f64; 3]| velocity != [0.0; 3];
@@ -98,6 +115,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             kinetic <= residual * residual * strain
         };
         self.watch.lap("relaxation", start);
+    }
+
+    /// Whether all deformable bodies are on grids of their own.
+    pub(super) fn all_have_grids(&self) -> bool {
+        self.settings.references.len() + self.settings.rigid.len() == self.state.bodies.len()
     }
 
     /// Kinetic and strain energy of the deformable bodies [J].
@@ -118,6 +140,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 body.particles.stop();
             }
         });
+        self.state.references.nodes.iter_mut().for_each(|nodes| nodes.velocities.fill(Vector::ZERO));
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         self.state.relaxation.peaks += 1;
         self.state.relaxation.kinetic = [0.0; 2];

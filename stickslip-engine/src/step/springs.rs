@@ -30,8 +30,6 @@ pub struct SpringRoom<T, const D: usize> {
     /// Place in memory of the particles of each body at which springs end, by number.
     places: Vec<Vec<u32>>,
     springs: Vec<SpringStep>,
-    /// Of each spring what it did, if it ends at bodies on grids of their own.
-    pub own: Vec<Option<SpringStep>>,
     /// Nodes of the parts of all springs, with g_i.
     nodes: Vec<PartNodes<T, D>>,
 }
@@ -61,7 +59,7 @@ pub struct SpringStep {
 
 impl<T, const D: usize> Default for SpringRoom<T, D> {
     fn default() -> Self {
-        SpringRoom { places: Vec::new(), springs: Vec::new(), own: Vec::new(), nodes: Vec::new() }
+        SpringRoom { places: Vec::new(), springs: Vec::new(), nodes: Vec::new() }
     }
 }
 
@@ -82,8 +80,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         room.springs.clear();
         let of_springs = centers.into_iter().zip(directions).zip(room.nodes.as_chunks().0).enumerate();
         for (number, ((centers, direction), nodes)) in of_springs {
-            if let Some(Some(step)) = room.own.get(number) {
-                room.springs.push(*step);
+            let places = self.settings.springs[number].ends.each_ref().map(|end| self.reference_of(end.body));
+            if places.iter().any(Option::is_some) {
+                room.springs.push(self.pull_nodes(number, places, dt));
                 continue;
             }
             let line = centers.zip(direction).map(|(centers, direction)| Line { centers, direction });

@@ -5,7 +5,7 @@ use super::cpu::Threads;
 use super::heat::Warmed;
 use super::loads::LoadRoom;
 use super::mechanism::{JointSums, Mechanism, RigidSurfaces, TouchForce};
-use super::reference::{ReferenceBody, References};
+use super::reference::{ReferenceBody, References, Touching};
 use super::relax::RelaxationProgress;
 use super::springs::SpringRoom;
 use super::together::LawRoom;
@@ -23,7 +23,7 @@ use crate::scene::{Changes, Gravity, Joint, Leaving, Time, Transfer};
 use crate::tensor::Vector;
 use std::sync::{Arc, Mutex};
 use stickslip_reference::cells::Table;
-use stickslip_reference::contact::Neighbours;
+use stickslip_reference::contact::{Neighbours, PeriodLengths};
 
 use crate::pass::{Found, ParticleLoop};
 
@@ -62,6 +62,8 @@ pub struct Settings<T, const D: usize> {
     pub rigid: Vec<usize>,
     /// Bodies on grids of their own, in their order.
     pub references: Vec<ReferenceBody<D>>,
+    /// After which lengths everything is there again for these.
+    pub lengths: PeriodLengths<D>,
     /// The functions at the particles of each of these.
     pub tables: Vec<Table<T, D>>,
     /// Bodies whose law takes all particles at once, in their order.
@@ -175,6 +177,8 @@ pub struct Workspace<T, const D: usize> {
     pub damping_impulses: Vec<Vector<T, D>>,
     /// What pairs with bodies on grids of their own did in the step.
     pub reference_touches: Vec<BlockSums>,
+    /// The points of theirs that touch in the step.
+    pub reference_touching: Touching<D>,
     /// Points of theirs that may come to touch.
     pub neighbours: Neighbours<D>,
     /// The signal that these bodies allow, if there are any [m/s].
@@ -217,6 +221,7 @@ impl<T, const D: usize> Workspace<T, D> {
             mechanism: Mechanism::default(),
             damping_impulses: Vec::new(),
             reference_touches: Vec::new(),
+            reference_touching: Touching::default(),
             neighbours: Neighbours::default(),
             reference_signal: None,
             touches: Default::default(),

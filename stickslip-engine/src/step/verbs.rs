@@ -90,11 +90,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.settings.rigid.len() + self.settings.references.len() == self.state.bodies.len()
             && self.settings.loads.iter().all(|load| self.reference_of(load.body).is_some())
             && self.settings.springs.iter().all(|spring| {
-                spring.ends.iter().all(|end| {
-                    let prescribed = self.state.bodies[end.body].motion.as_ref();
-                    prescribed.is_some_and(|motion| motion.as_free().is_none())
-                        || self.reference_of(end.body).is_some()
-                })
+                spring.ends.iter().any(|end| self.reference_of(end.body).is_some())
+                    || spring.ends.iter().all(|end| {
+                        let prescribed = self.state.bodies[end.body].motion.as_ref();
+                        prescribed.is_some_and(|motion| motion.as_free().is_none())
+                    })
             })
     }
 

@@ -1,7 +1,7 @@
 //! Filling a shape with particles.
 
 use super::fitted::fit;
-use super::form::{Form, PER_SIDE};
+use super::form::{Form, HeldFaces, PER_SIDE};
 use super::inside::NudgedPoint;
 use super::{Bounds, Curved, Shape};
 use serde::Serialize;
@@ -24,7 +24,7 @@ pub struct SiteLattice {
 }
 
 /// How particles are laid out in a shape.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Arrangement {
     /// On the lattice of space; curved surfaces become stairs.
@@ -32,8 +32,8 @@ pub enum Arrangement {
     Lattice,
     /// In rings, shells or boxes that follow the shape's own surface; the volume is exact.
     Fitted,
-    /// Parts of the cells of a grid over the shape, see [`super::form`]; the volume is exact.
-    Parts,
+    /// Parts of the cells of a grid over the shape, which these faces hold, see [`super::form`]; the volume is exact.
+    Parts(HeldFaces),
 }
 
 /// Where a particle starts, and how large.
@@ -166,11 +166,11 @@ pub fn sites<'a>(
             }))
         }
         Arrangement::Fitted => Box::new(fit(shape, lattice.spacing, lattice.dimension)?.into_iter()),
-        Arrangement::Parts => {
+        Arrangement::Parts(faces) => {
             let cell = PER_SIDE as f64 * lattice.spacing;
             let parts = match lattice.dimension {
-                2 => Form::<2>::new(shape, cell).ok()?.parts(),
-                _ => Form::<3>::new(shape, cell).ok()?.parts(),
+                2 => Form::<2>::new(shape, cell, faces).ok()?.parts(),
+                _ => Form::<3>::new(shape, cell, faces).ok()?.parts(),
             };
             let dimension = lattice.dimension;
             let site = move |(place, volume)| ParticleSite::of_volume(place, volume, dimension);

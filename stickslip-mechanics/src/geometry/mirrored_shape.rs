@@ -48,10 +48,20 @@ impl MirroredShape {
         self
     }
 
+    /// The shape without its images.
+    pub fn half(&self) -> &Shape {
+        &self.shape
+    }
+
     /// A box that holds it; `None` of one without bounds, or with images.
     pub fn bounds(&self) -> Option<Bounds> {
         let alone = self.mirrors.is_empty() && self.repeats.is_empty();
         self.shape.bounds(self.dimension).filter(|_| alone)
+    }
+
+    /// A box that holds the shape as it is continued, without images; `None` of one without bounds.
+    pub fn bounds_of_one(&self) -> Option<Bounds> {
+        self.shape.bounds(self.dimension)
     }
 
     /// Whether it is joined to itself along an axis.

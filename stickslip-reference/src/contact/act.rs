@@ -101,6 +101,6 @@ fn relative_velocity<const D: usize>(
     let own = of(body, &body.surface[touch.memory.point as usize].weights);
     own - match &touch.met {
         Met::Deforming(b, weights) => of(&bodies[*b], weights),
-        Met::Rigid(r) => Vector::of(rigids[*r].velocity(touch.at.space())),
+        Met::Rigid(r) => Vector::of(rigids[*r].velocity((touch.at - touch.away).space())),
     }
 }

@@ -1,7 +1,7 @@
 //! Where a place lies in a body: its undeformed place, the distance to the surface and the way out.
 
 use crate::interior::Interior;
-use stickslip_mechanics::geometry::Shape;
+use stickslip_mechanics::geometry::MirroredShape;
 use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::{Matrix, Vector};
 
@@ -35,7 +35,7 @@ const BACK: f64 = 0.3;
 /// surface there: near corners the face counts that looks at it. `None` where the place is far from the body, or no
 /// face of it looks at the partner.
 pub fn look<const D: usize>(
-    (interior, shape): (&Interior<D>, &Shape),
+    (interior, shape): (&Interior<D>, &MirroredShape),
     at: Vector<f64, D>,
     start: Vector<f64, D>,
     toward: Option<Vector<f64, D>>,
@@ -58,7 +58,7 @@ pub fn look<const D: usize>(
             break;
         }
     }
-    let level = shape.level(place.space(), D);
+    let level = shape.level(place.space());
     if level.distance.is_nan() || level.distance > BEYOND * cell {
         return None;
     }
@@ -76,7 +76,7 @@ pub fn look<const D: usize>(
     // The face that the point came through: seen from a little before it.
     let toward = toward?;
     let back = times(&inverse, toward) * (-BACK * cell);
-    let before = shape.level((place + back).space(), D);
+    let before = shape.level((place + back).space());
     let gradient = Vector::of(before.gradient);
     let (length, normal) = outward(gradient);
     let normal = normal * (1.0 / length);

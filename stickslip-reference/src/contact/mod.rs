@@ -19,6 +19,7 @@
 
 mod act;
 mod friction;
+mod images;
 mod look;
 mod near;
 #[cfg(test)]
@@ -26,6 +27,7 @@ mod tests;
 
 pub use act::{press, slip};
 pub use friction::Friction;
+pub use images::PeriodLengths;
 pub use look::{Seen, look};
 pub use near::{Neighbours, Partner, find};
 
@@ -33,7 +35,7 @@ use crate::interior::Interior;
 use crate::surface::SurfacePoint;
 use serde::{Deserialize, Serialize};
 use stickslip_mechanics::geometry::form::Weights;
-use stickslip_mechanics::geometry::{Shape, SignedDistance};
+use stickslip_mechanics::geometry::{MirroredShape, SignedDistance};
 use stickslip_mechanics::tensor::Vector;
 
 /// Stiffness of the layer over that of a cell of both bodies.
@@ -45,8 +47,8 @@ pub struct Deforming<'a, const D: usize> {
     pub body: usize,
     /// Its nodes.
     pub interior: &'a mut Interior<D>,
-    /// Its undeformed shape.
-    pub shape: &'a Shape,
+    /// Its undeformed shape, with its images behind faces that hold it.
+    pub shape: &'a MirroredShape,
     /// Points of its surface.
     pub surface: &'a [SurfacePoint<D>],
     /// Moduli of its longitudinal and its shear wave at rest [Pa].
@@ -63,6 +65,14 @@ pub trait Rigid: Sync {
     fn velocity(&self, place: [f64; 3]) -> [f64; 3];
     /// A box that holds it [m].
     fn bounds(&self) -> [[f64; 3]; 2];
+    /// The same distance to that image of it between periodic faces which is nearest, and from the body to the image [m].
+    fn nearest(&self, place: [f64; 3]) -> (SignedDistance, [f64; 3]) {
+        (self.level(place), [0.0; 3])
+    }
+    /// Whether forces move it, not a prescription.
+    fn is_free(&self) -> bool {
+        false
+    }
 }
 
 /// A point of a body's surface that touches a partner: what is known of it from one step to the next.
@@ -106,6 +116,8 @@ pub struct Touch<const D: usize> {
     pub side: usize,
     /// Its partner.
     pub met: Met<D>,
+    /// From the partner to that image of it between periodic faces which is touched [m].
+    pub away: Vector<f64, D>,
     /// Where it is [m].
     pub at: Vector<f64, D>,
     /// Normal, out of the partner.

@@ -1,9 +1,10 @@
 //! Which points of surfaces touch which partners.
 
+use super::images::{PeriodLengths, pairs};
 use super::{Deforming, Memory, Met, Rigid, STIFFNESS, Touch, look};
 use rayon::prelude::*;
-use stickslip_mechanics::geometry::Shape;
 use stickslip_mechanics::geometry::form::digits;
+use stickslip_mechanics::geometry::{Shape, SignedDistance};
 use stickslip_mechanics::tensor::Vector;
 
 /// A pair of bodies that may touch: the second deforms, or is rigid.
@@ -39,6 +40,7 @@ pub struct Neighbours<const D: usize> {
     moved: Vec<f64>,
     /// Bodies beside rigid ones, and how far these have moved there [m].
     beside: Vec<(usize, usize, f64)>,
+    lengths: PeriodLengths<D>,
 }
 
 /// A point near a partner that deforms, by places in the list of these.
@@ -63,15 +65,16 @@ struct RigidPair {
 }
 
 /// The points that touch, by body, point and partner. `meet` says whether a body touches a partner at all; `known` are
-/// the points that touched before, in the same order.
+/// the points that touched before, in the same order. Bodies meet images of each other, and of themselves.
 pub fn find<const D: usize>(
     (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
     known: &[Memory],
     meet: &(dyn Fn(usize, Partner) -> bool + Sync),
     neighbours: &mut Neighbours<D>,
+    lengths: PeriodLengths<D>,
 ) -> Vec<Touch<D>> {
-    if neighbours.are_old(bodies) {
-        *neighbours = Neighbours::new(bodies, rigids, meet);
+    if neighbours.are_old((bodies, rigids), meet) {
+        *neighbours = Neighbours::new((bodies, rigids), meet, lengths);
     }
     let here = &*neighbours;
     let touches = |a: usize| here.touches_of((bodies, rigids, a), known);
@@ -86,8 +89,10 @@ impl<const D: usize> Neighbours<D> {
             *moved += squares.fold(0.0, f64::max).sqrt() * dt;
         }
         for (a, r, moved) in &mut self.beside {
-            // A rigid motion is fastest at a corner.
+            // A rigid motion is fastest at a corner, and which of its images is where in the box is not known.
             let [low, high] = self.boxes[*a];
+            let (_, away) = nearest(rigids[*r], (low + high) * 0.5);
+            let [low, high] = [low - away - self.lengths.0, high - away + self.lengths.0];
             let corners = (0..1_usize << D).map(|corner| {
                 let at = Vector::<f64, D>::from_fn(|k| if corner >> k & 1 == 1 { high[k] } else { low[k] });
                 Vector::<f64, 3>(rigids[*r].velocity(at.space())).norm()
@@ -96,17 +101,29 @@ impl<const D: usize> Neighbours<D> {
         }
     }
 
-    fn are_old(&self, bodies: &[Deforming<'_, D>]) -> bool {
+    /// Whether a body has moved so far since that neighbours may be missed, or a rigid one has come beside it.
+    fn are_old(
+        &self,
+        (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
+        meet: &(dyn Fn(usize, Partner) -> bool + Sync),
+    ) -> bool {
         let far = |a: usize, moved: f64| moved.is_nan() || moved > SKIN * bodies[a].interior.form.cell;
+        let has_come = |r: usize| {
+            let bounds = rigids[r].bounds().map(Vector::of);
+            let beside = |a: usize| self.beside.binary_search_by_key(&(a, r), |&(a, r, _)| (a, r)).is_ok();
+            let mut near = (0..bodies.len()).filter(|&a| self.lengths.overlap(&self.boxes[a], &bounds));
+            near.any(|a| !beside(a) && meet(a, Partner::Rigid(r)))
+        };
         self.moved.len() != bodies.len()
             || self.moved.iter().enumerate().any(|(a, &moved)| far(a, moved))
             || self.beside.iter().any(|&(a, _, moved)| far(a, moved))
+            || (0..rigids.len()).any(has_come)
     }
 
     fn new(
-        bodies: &[Deforming<'_, D>],
-        rigids: &[&dyn Rigid],
+        (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
         meet: &(dyn Fn(usize, Partner) -> bool + Sync),
+        lengths: PeriodLengths<D>,
     ) -> Self {
         let places = |a: usize| -> Vec<Vector<f64, D>> {
             (0..bodies[a].surface.len()).map(|point| place(&bodies[a], point)).collect()
@@ -114,7 +131,7 @@ impl<const D: usize> Neighbours<D> {
         let places: Vec<Vec<Vector<f64, D>>> = (0..bodies.len()).into_par_iter().map(places).collect();
         let boxes: Vec<_> = bodies.iter().zip(&places).map(|(body, places)| grown(body, places)).collect();
         let mut near = vec![Vec::new(); bodies.len()];
-        for [a, b] in pairs(&boxes) {
+        for [a, b] in pairs(&boxes, lengths) {
             for [a, b] in [[a, b], [b, a]] {
                 if meet(a, Partner::Deforming(b)) {
                     near[a].push(b);
@@ -122,23 +139,24 @@ impl<const D: usize> Neighbours<D> {
             }
         }
         for (a, near) in near.iter_mut().enumerate() {
-            if may_fold(&bodies[a]) && meet(a, Partner::Deforming(a)) {
+            let may_meet = may_fold(&bodies[a]) || lengths.is_long(&boxes[a]);
+            if may_meet && meet(a, Partner::Deforming(a)) {
                 near.push(a);
             }
             near.sort_unstable();
         }
-        let seen = Seen { bodies, places: &places, boxes: &boxes, near: &near };
+        let seen = Seen { bodies, places: &places, boxes: &boxes, near: &near, lengths };
         let pairs = seen.close_points().into_par_iter().map(|close| seen.pair(close)).collect();
         let beside: Vec<(usize, usize, f64)> = (0..bodies.len())
             .flat_map(|a| (0..rigids.len()).map(move |r| (a, r, 0.0)))
             .filter(|&(a, r, _)| {
-                overlap(&boxes[a], &rigids[r].bounds().map(Vector::of)) && meet(a, Partner::Rigid(r))
+                lengths.overlap(&boxes[a], &rigids[r].bounds().map(Vector::of)) && meet(a, Partner::Rigid(r))
             })
             .collect();
         let rigid_pairs = |(number, &(a, r, _)): (usize, &(usize, usize, f64))| {
             let far = 2.0 * SKIN * bodies[a].interior.form.cell;
             let close = (0..).zip(&places[a]).filter_map(|(point, at)| {
-                let gap = CERTAIN * rigids[r].level(at.space()).distance;
+                let gap = CERTAIN * nearest(rigids[r], *at).0.distance;
                 let gap = if gap.is_nan() { f64::NEG_INFINITY } else { gap };
                 (gap <= far).then_some(RigidPair { body: a as u32, point, beside: number as u32, gap })
             });
@@ -146,7 +164,7 @@ impl<const D: usize> Neighbours<D> {
         };
         let rigid = beside.par_iter().enumerate().map(rigid_pairs).collect::<Vec<_>>();
         let rigid = rigid.into_iter().flatten().collect();
-        Neighbours { pairs, rigid, boxes, moved: vec![0.0; bodies.len()], beside }
+        Neighbours { pairs, rigid, boxes, moved: vec![0.0; bodies.len()], beside, lengths }
     }
 
     /// The points of a body's surface that touch: those that touched before, and neighbours that have come so near.
@@ -162,13 +180,14 @@ impl<const D: usize> Neighbours<D> {
             known.binary_search_by_key(&(number, point, partner as u32), Memory::key).is_ok()
         };
         let point =
-            |point: u32| Point { bodies, a, number: point as usize, at: place(&bodies[a], point as usize) };
+            |number: usize| Point { bodies, a, number, at: place(&bodies[a], number), lengths: self.lengths };
+        let point = |number: u32| point(number as usize);
         let again = |memory: &Memory| {
             let partner = memory.partner as usize;
             match bodies.binary_search_by_key(&partner, |body| body.body) {
                 Ok(b) => point(memory.point).in_body(b, *memory),
                 Err(_) => {
-                    let r = rigids.iter().position(|rigid| rigid.body() == partner)?;
+                    let r = rigids.binary_search_by_key(&partner, |rigid| rigid.body()).ok()?;
                     point(memory.point).in_rigid((r, rigids[r]), *memory)
                 }
             }
@@ -201,6 +220,8 @@ struct Entry<const D: usize> {
     body: u32,
     point: u32,
     at: Vector<f64, D>,
+    /// Whether it is an image of a point that is in the list.
+    is_image: bool,
 }
 
 /// A point that lies near a point of a partner's surface, by places in the list of bodies that deform.
@@ -219,6 +240,7 @@ struct Seen<'a, 'b, const D: usize> {
     places: &'a [Vec<Vector<f64, D>>],
     boxes: &'a [[Vector<f64, D>; 2]],
     near: &'a [Vec<usize>],
+    lengths: PeriodLengths<D>,
 }
 
 impl<const D: usize> Seen<'_, '_, D> {
@@ -229,7 +251,8 @@ impl<const D: usize> Seen<'_, '_, D> {
         let at = self.places[body as usize][point as usize];
         let start = other.surface[nearest as usize].place;
         let toward = Some(normal(a, point as usize));
-        let (gap, place) = match look((&*other.interior, other.shape), at, start, toward) {
+        let away = self.lengths.away(self.places[partner as usize][nearest as usize], at);
+        let (gap, place) = match look((&*other.interior, other.shape), at - away, start, toward) {
             Some(seen) if seen.distance > 0.0 => (CERTAIN * seen.distance, seen.place),
             _ => (f64::NEG_INFINITY, start),
         };
@@ -243,13 +266,16 @@ impl<const D: usize> Seen<'_, '_, D> {
             let reach = Vector([width; D]);
             let around: Vec<_> =
                 self.near[a].iter().map(|&b| [self.boxes[b][0] - reach, self.boxes[b][1] + reach]).collect();
-            let beside =
-                (0..).zip(&self.places[a]).filter(|(_, at)| around.iter().any(|it| inside(it, **at)));
-            let entry = |(point, &at): (u32, &Vector<f64, D>)| {
-                let cell = std::array::from_fn(|k| (at[k] / width).floor() as i32);
-                Entry { cell, body: a as u32, point, at }
+            let is_beside = |at: Vector<f64, D>| around.iter().any(|it| self.lengths.overlap(&[at; 2], it));
+            let beside = (0..).zip(&self.places[a]).filter(|(_, at)| is_beside(**at));
+            let entries = |(point, &at): (u32, &Vector<f64, D>)| {
+                let images = self.lengths.images(at, width).into_iter().enumerate();
+                images.map(move |(image, at)| {
+                    let cell = std::array::from_fn(|k| (at[k] / width).floor() as i32);
+                    Entry { cell, body: a as u32, point, at, is_image: image > 0 }
+                })
             };
-            beside.map(entry).collect::<Vec<_>>()
+            beside.flat_map(entries).collect::<Vec<_>>()
         };
         let entries = (0..self.bodies.len()).into_par_iter().map(entries_of).collect::<Vec<_>>();
         let mut entries: Vec<Entry<D>> = entries.into_iter().flatten().collect();
@@ -282,7 +308,7 @@ impl<const D: usize> Seen<'_, '_, D> {
         }
         let mut close = Vec::new();
         let mut best: Vec<(f64, Close)> = Vec::new();
-        for entry in here {
+        for entry in here.iter().filter(|entry| !entry.is_image) {
             let a = entry.body as usize;
             best.clear();
             for others in around.iter().flat_map(|cell| cell.chunk_by(|p, q| p.body == q.body)) {
@@ -311,6 +337,12 @@ impl<const D: usize> Seen<'_, '_, D> {
     }
 }
 
+/// Distance from a place to a rigid body or the image of it that is nearest, and from the body to that image [m].
+fn nearest<const D: usize>(rigid: &dyn Rigid, at: Vector<f64, D>) -> (SignedDistance, Vector<f64, D>) {
+    let (level, away) = rigid.nearest(at.space());
+    (level, Vector::of(away))
+}
+
 /// Where a point of a body's surface is.
 fn place<const D: usize>(body: &Deforming<'_, D>, point: usize) -> Vector<f64, D> {
     body.interior.at(&body.surface[point].weights, &body.interior.places)
@@ -330,7 +362,7 @@ const STOUT: f64 = 3.0;
 
 /// Whether parts of a body may touch each other: of all but balls and stout boxes.
 fn may_fold<const D: usize>(body: &Deforming<'_, D>) -> bool {
-    let shape = match body.shape {
+    let shape = match body.shape.half() {
         Shape::Rotated { shape, .. } => shape,
         shape => shape,
     };
@@ -350,6 +382,7 @@ struct Point<'a, 'b, const D: usize> {
     a: usize,
     number: usize,
     at: Vector<f64, D>,
+    lengths: PeriodLengths<D>,
 }
 
 /// Outward normal of the deformed surface at a point of it, F^-T N.
@@ -386,7 +419,7 @@ impl<const D: usize> Point<'_, '_, D> {
     /// A point that touches, with the share of its area on which it does.
     fn touch(
         &self,
-        (memory, met): (Memory, Met<D>),
+        (memory, met, away): (Memory, Met<D>, Vector<f64, D>),
         (normal, gap): (Vector<f64, D>, f64),
         (share, stiffness): (f64, [f64; 2]),
     ) -> Touch<D> {
@@ -394,6 +427,7 @@ impl<const D: usize> Point<'_, '_, D> {
             memory,
             side: self.a,
             met,
+            away,
             at: self.at,
             normal,
             gap,
@@ -410,12 +444,13 @@ impl<const D: usize> Point<'_, '_, D> {
     fn come_to(&self, b: usize, about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
-        let found = Vector::<f64, D>::of(self.in_body(b, memory(about))?.memory.place);
+        let touch = self.in_body(b, memory(about))?;
+        let found = Vector::<f64, D>::of(touch.memory.place);
         let reach = AROUND * partner.interior.form.cell;
         let is_near = |point: &u32| (partner.surface[*point as usize].place - found).norm() < reach;
         let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
         let away = |point: u32| {
-            let away = place(partner, point as usize) - self.at;
+            let away = place(partner, point as usize) + touch.away - self.at;
             (away.dot(away), point)
         };
         let all = (0..partner.surface.len() as u32).filter(is_near).filter(is_apart).map(away);
@@ -428,7 +463,8 @@ impl<const D: usize> Point<'_, '_, D> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let start = Vector::of(before.place);
         let toward = Some(normal(body, self.number));
-        let seen = look((&*partner.interior, partner.shape), self.at, start, toward)?;
+        let away = self.away(partner, start);
+        let seen = look((&*partner.interior, partner.shape), self.at - away, start, toward)?;
         let own = body.surface[self.number].place;
         let is_beside = self.a == b && (seen.place - own).norm() <= APART * body.interior.form.cell;
         if seen.distance >= 0.0 || is_beside {
@@ -439,17 +475,26 @@ impl<const D: usize> Point<'_, '_, D> {
         let memory = Memory { place: seen.place.space(), ..before };
         // The partner looks back with the other half.
         let layer = (0.5, [of(0), of(1)]);
-        Some(self.touch((memory, Met::Deforming(b, seen.weights)), (seen.normal, seen.distance), layer))
+        Some(self.touch((memory, Met::Deforming(b, seen.weights), away), (seen.normal, seen.distance), layer))
+    }
+
+    /// From a partner to that image of it [m] in which what was undeformed at `start` is nearest.
+    fn away(&self, partner: &Deforming<'_, D>, start: Vector<f64, D>) -> Vector<f64, D> {
+        if !self.lengths.any() {
+            return Vector::ZERO;
+        }
+        let nodes = &*partner.interior;
+        self.lengths.away(nodes.at(&nodes.form.weights(start), &nodes.places), self.at)
     }
 
     fn in_rigid(&self, (r, rigid): (usize, &dyn Rigid), memory: Memory) -> Option<Touch<D>> {
-        let level = rigid.level(self.at.space());
+        let (level, away) = nearest(rigid, self.at);
         if level.distance.is_nan() || level.distance >= 0.0 {
             return None;
         }
         let body = &self.bodies[self.a];
         let layer = (1.0, body.moduli.map(|modulus| STIFFNESS * modulus / body.interior.form.cell));
-        Some(self.touch((memory, Met::Rigid(r)), (Vector::of(level.gradient), level.distance), layer))
+        Some(self.touch((memory, Met::Rigid(r), away), (Vector::of(level.gradient), level.distance), layer))
     }
 }
 
@@ -461,28 +506,4 @@ fn grown<const D: usize>(body: &Deforming<'_, D>, places: &[Vector<f64, D>]) -> 
         [Vector::from_fn(|k| low[k].min(at[k])), Vector::from_fn(|k| high[k].max(at[k]))]
     });
     [low - margin, high + margin]
-}
-
-fn overlap<const D: usize>(a: &[Vector<f64, D>; 2], b: &[Vector<f64, D>; 2]) -> bool {
-    (0..D).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k])
-}
-
-fn inside<const D: usize>(bounds: &[Vector<f64, D>; 2], at: Vector<f64, D>) -> bool {
-    (0..D).all(|k| bounds[0][k] <= at[k] && at[k] <= bounds[1][k])
-}
-
-/// Pairs of boxes that overlap, the first by its lower number: by a sweep along the first axis.
-fn pairs<const D: usize>(boxes: &[[Vector<f64, D>; 2]]) -> Vec<[usize; 2]> {
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&a, &b| boxes[a][0][0].total_cmp(&boxes[b][0][0]).then(a.cmp(&b)));
-    let mut found = Vec::new();
-    for (place, &a) in order.iter().enumerate() {
-        for &b in order[place + 1..].iter().take_while(|&&b| boxes[b][0][0] <= boxes[a][1][0]) {
-            if overlap(&boxes[a], &boxes[b]) {
-                found.push([a.min(b), a.max(b)]);
-            }
-        }
-    }
-    found.sort_unstable();
-    found
 }

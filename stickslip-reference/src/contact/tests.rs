@@ -2,6 +2,7 @@ use super::*;
 use crate::interior::tests::{Alone, DENSITY, elastic, p_wave};
 use crate::surface::points;
 use stickslip_mechanics::friction::FrictionMemory;
+use stickslip_mechanics::geometry::Shape;
 
 /// A rigid half-space that does not move.
 struct Ground<const D: usize> {
@@ -28,12 +29,13 @@ impl<const D: usize> Rigid for Ground<D> {
 }
 
 struct Meeting<const D: usize> {
-    bodies: Vec<(Alone<D>, Shape, Vec<SurfacePoint<D>>)>,
+    bodies: Vec<(Alone<D>, MirroredShape, Vec<SurfacePoint<D>>)>,
     grounds: Vec<Ground<D>>,
     friction: Friction,
     gravity: Vector<f64, D>,
     known: Vec<Memory>,
     neighbours: Neighbours<D>,
+    lengths: PeriodLengths<D>,
     /// Energy of layers, and taken by friction.
     stored: f64,
     rubbed: f64,
@@ -52,6 +54,7 @@ impl<const D: usize> Meeting<D> {
             gravity: Vector::ZERO,
             known: Vec::new(),
             neighbours: Neighbours::default(),
+            lengths: PeriodLengths::default(),
             stored: 0.0,
             rubbed: 0.0,
             time: 0.0,
@@ -62,7 +65,7 @@ impl<const D: usize> Meeting<D> {
     fn with(mut self, shape: Shape, cell: f64, velocity: impl Fn(Vector<f64, D>) -> Vector<f64, D>) -> Self {
         let alone = Alone::new(&shape, cell, velocity);
         let surface = points(&shape, &alone.interior.form);
-        self.bodies.push((alone, shape, surface));
+        self.bodies.push((alone, MirroredShape::new(&shape, Vec::new(), D), surface));
         self
     }
 
@@ -84,10 +87,10 @@ impl<const D: usize> Meeting<D> {
             .collect();
         let rule = |_: &Touch<D>| friction;
         let all = (&bodies[..], &grounds[..]);
-        let mut touches = find(all, &self.known, &|_, _| true, &mut self.neighbours);
+        let mut touches = find(all, &self.known, &|_, _| true, &mut self.neighbours, self.lengths);
         self.rubbed += parted(&self.known, &touches).map(|memory| memory.energy).sum::<f64>();
         press(&mut bodies, &mut touches, &rule);
-        bodies.iter_mut().for_each(|body| body.interior.accelerate(dt, gravity));
+        bodies.iter_mut().for_each(|body| body.interior.accelerate(dt, gravity, &[]));
         self.known = slip(&bodies, &grounds, (&mut touches, dt), &rule);
         self.neighbours.moved((&bodies, &grounds), dt);
         bodies.iter_mut().for_each(|body| body.interior.advance(dt));
@@ -148,6 +151,12 @@ fn neighbours_of_before_find_what_those_of_now_find() {
         )
     };
     compare(disks, 10.0 / p_wave());
+    let periodic = || Meeting {
+        lengths: PeriodLengths(Vector([4.5, 2.4])),
+        grounds: Vec::new(),
+        ..disks().with(disk(0.4, 2.0), 0.125, |_| Vector([0.5 * speed, speed]))
+    };
+    compare(periodic, 10.0 / p_wave());
     let arch = Shape::rectangle([0.0, -1.0], [3.0, 1.0]).without(Shape::rectangle([0.8, -0.3], [4.0, 0.3]));
     let close = move |x: Vector<f64, 2>| Vector([0.0, -4.0 * speed * x[1].signum() * (x[0] / 3.0).powi(2)]);
     compare(|| Meeting::<2>::new().with(arch.clone(), 0.15, close), 15.0 / p_wave());

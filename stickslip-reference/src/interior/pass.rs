@@ -45,7 +45,6 @@ pub fn strain<T: Laned, const D: usize>(
     let columns = particles.open();
     let visit = Visit { interior, table, matter, columns, body, dt, found: &mut found };
     T::run(processor, visit);
-    interior.gather_forces();
     // Cells know particles by their places, which ascend as their numbers do.
     let fault =
         found.fault.map(|fault| ParticleFault { number: particles.numbers()[fault.particle], ..fault });

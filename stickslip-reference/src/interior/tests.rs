@@ -5,6 +5,7 @@ use stickslip_kernels::lanes::Processor;
 use stickslip_kernels::matter::{Gyration, Matter, Particle};
 use stickslip_kernels::particles::{OwnColumns, Particles};
 use stickslip_mechanics::geometry::Shape;
+use stickslip_mechanics::geometry::form::HeldFaces;
 use stickslip_mechanics::material::Motion;
 use stickslip_mechanics::material::{AtRest, Isotropic, Material, NeoHookean, Thickness};
 use stickslip_mechanics::scheme::VolumeChange;
@@ -26,7 +27,7 @@ pub struct Alone<const D: usize> {
 
 impl<const D: usize> Alone<D> {
     pub fn new(shape: &Shape, cell: f64, velocity: impl Fn(Vector<f64, D>) -> Vector<f64, D>) -> Self {
-        let form = Arc::new(Form::<D>::new(shape, cell).unwrap());
+        let form = Arc::new(Form::<D>::new(shape, cell, HeldFaces::default()).unwrap());
         let law = Material::NeoHookean(NeoHookean { elastic: elastic() });
         let matter = Matter {
             material: Arc::new(law),
@@ -58,13 +59,14 @@ impl<const D: usize> Alone<D> {
         let straining = Straining { body: 0, dt, processor: Processor::best() };
         let found = strain(&mut self.interior, &self.table, (&self.matter, &mut self.particles), straining);
         assert!(found.fault.is_none(), "{found:?}");
+        self.interior.gather_forces();
         self.signal = found.signal;
     }
 
     /// A step by a Courant number, in which a function may change velocities; its length [s].
     pub fn step(&mut self, courant: f64, hold: impl Fn(&mut Interior<D>)) -> f64 {
         let dt = courant * self.interior.form.cell / self.signal;
-        self.interior.accelerate(dt, Vector::ZERO);
+        self.interior.accelerate(dt, Vector::ZERO, &[]);
         hold(&mut self.interior);
         self.interior.advance(dt);
         self.strain(dt);

@@ -6,7 +6,7 @@ use super::penetration::{SharedRoom, deepest};
 use super::periodic::Images;
 use super::warning::Warning;
 use crate::geometry::{Bounds, SiteLattice};
-use crate::scene::{Body, ContactLaw, Problem, Scene};
+use crate::scene::{Body, ContactLaw, Interior, Problem, Scene};
 use rayon::prelude::*;
 
 /// A particle this share of the spacing inside a body is inside beyond round-off; touching bodies stay allowed.
@@ -135,9 +135,14 @@ fn kept_overlap(scene: &Scene, overlap: &Overlap, others: usize) -> Warning {
         more => format!(", and {more} more pair{} by less", if more == 1 { "" } else { "s" }),
     };
     let rigid = [*a, *of].iter().all(|&body| scene.bodies[body].is_rigid());
-    let becomes = match rigid {
-        true => "they part slowly, as their weight would let them fall by as much",
-        false => {
+    let on_own_grid = [*a, *of].iter().any(|&body| scene.interior(body) == Interior::Reference);
+    let becomes = match (rigid, on_own_grid) {
+        (true, _) => "they part slowly, as their weight would let them fall by as much",
+        (false, true) => {
+            "contact presses them apart from the first step on, with energy from nowhere; by time.relax that is an \
+             interference fit"
+        }
+        (false, false) => {
             "contact keeps them from going deeper and does not press them apart: the overlap stays, without stress; \
              overlap = \"press\" in their contact rule makes an interference fit of it"
         }

@@ -10,7 +10,7 @@ use super::table::short;
 use super::warning::{Warning, and_more, few};
 use super::{
     dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules,
-    thickness,
+    soil, thickness,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
@@ -214,6 +214,7 @@ fn warnings(
         .chain(joint_freedom::warning(scene, extents))
         .chain(locking::warning(scene))
         .chain(locking::bending(scene))
+        .chain(soil::warning(scene))
         .chain(loads::warning(scene, loads))
         .chain(pulses::warning(scene, time_step))
         .chain(thin_rigid_bodies(scene))

@@ -14,6 +14,8 @@ const CONTACTS: usize = 5;
 const PAIRS: usize = 10;
 /// Pairs without an estimate that are named.
 const UNKNOWN: usize = 3;
+/// Steps whose wall time is said where it is not known how many there will be.
+const ROUND_STEPS: u64 = 1000;
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
@@ -47,9 +49,8 @@ impl Display for Report {
         let (rate, plural) = (short(rate), if cores == 1 { "" } else { "s" });
         writeln!(
             f,
-            "wall time    {}{} (at {rate} million particle-steps/s a core, {cores} core{plural})",
-            if self.ends_at_rest { "until the bodies are at rest, and no more than " } else { "" },
-            duration(self.wall_time)
+            "wall time    {} (at {rate} million particle-steps/s a core, {cores} core{plural})",
+            self.told_wall_time()
         )?;
         if self.rigid_contacts > 0 {
             let contacts = self.rigid_contacts;
@@ -70,6 +71,16 @@ impl Display for Report {
 }
 
 impl Report {
+    /// The expected wall time in words: nobody knows before how many steps lead to rest.
+    fn told_wall_time(&self) -> String {
+        let whole = duration(self.wall_time);
+        if !self.ends_at_rest || self.steps <= ROUND_STEPS {
+            return whole;
+        }
+        let round = duration(self.wall_time * ROUND_STEPS as f64 / self.steps as f64);
+        format!("{round} for {ROUND_STEPS} steps until the bodies are at rest, {whole} if they never are")
+    }
+
     fn write_bodies(&self, f: &mut Formatter<'_>) -> Result {
         let unit = if self.dimension.is_plane() { "mass [kg/m]" } else { "mass [kg]" };
         let width = column(self.bodies.iter().take(BODIES).map(|body| &body.name), "body");

@@ -1,6 +1,7 @@
 //! How long a step may be for free rigid bodies, in which no wave runs.
 
 use super::MassProperties;
+use super::light::longest_carried;
 use crate::scene::{JointKind, Scene};
 use crate::tensor::Vector;
 
@@ -19,7 +20,7 @@ const STEPS_A_SPRING: f64 = 50.0;
 /// r: the cell or the smallest radius of gyration, g: gravity; m, k, d: smallest mass at a spring or dashpot of a joint,
 /// and these, for
 /// hinges with the moment of inertia about the centre in place of the mass. Bodies of a mechanism move by a small part
-/// of a period in such a step.
+/// of a period in such a step. What bodies on grids of their own carry has the step of that.
 pub fn longest_step(scene: &Scene) -> f64 {
     let free = |body: usize| {
         let body = &scene.bodies[body];
@@ -28,7 +29,7 @@ pub fn longest_step(scene: &Scene) -> f64 {
     if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
         return f64::INFINITY;
     }
-    let mut longest = scene.time.end / FEWEST_STEPS;
+    let mut longest = (scene.time.end / FEWEST_STEPS).min(longest_carried(scene));
     let gravity = Vector(scene.gravity.strongest(scene.time.end)).norm();
     if gravity > 0.0 {
         let bodies = (0..scene.bodies.len()).filter_map(free);

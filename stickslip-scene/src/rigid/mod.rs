@@ -1,10 +1,12 @@
 //! Rigid bodies: those whose motion is prescribed, and free ones, which forces move.
 
 mod free;
+mod light;
 mod longest_step;
 
 pub use free::{FreeMotion, FreeState, MassProperties};
 use free::{quaternion_of, turn_of};
+pub use light::{Carried, carried_bodies};
 pub use longest_step::longest_step;
 
 use crate::outside::OutsideFault;

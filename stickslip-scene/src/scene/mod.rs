@@ -13,6 +13,7 @@ mod formula;
 mod fringes;
 mod gravity;
 mod health;
+mod held_faces;
 mod joints;
 mod letters;
 mod load;
@@ -311,8 +312,8 @@ pub struct Time {
     pub energy_drift: f64,
 }
 
-/// Dynamic relaxation by kinetic damping: wherever the kinetic energy of the deformable bodies has passed a peak, their
-/// velocities are set to zero (Cundall 1982).
+/// Dynamic relaxation: by critical damping of bodies on grids of their own (Underwood 1983), and where others deform, by
+/// velocities that are set to zero wherever the kinetic energy has passed a peak (Cundall 1982).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Relaxation {
     /// The bodies are at rest once the sum of the unbalanced forces at the nodes is at most this part of the sum of the
@@ -661,7 +662,7 @@ impl Scene {
     /// How particles are laid out in a body: parts of the cells of a grid of its own, or as the body says.
     pub fn arrangement(&self, body: &Body) -> Arrangement {
         match self.interior_of(body) {
-            Interior::Reference => Arrangement::Parts,
+            Interior::Reference => Arrangement::Parts(self.held_faces(body)),
             Interior::Grid => body.particles,
         }
     }

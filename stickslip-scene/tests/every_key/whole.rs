@@ -16,7 +16,7 @@ pub const CASES: &[Cases] = &[
             ("space.cell", "2 cm"),
             ("space.particles_per_side", "3"),
             ("space.basis", "cpdi"),
-            ("space.interior", "reference"),
+            ("space.interior", "grid"),
             ("space.precision", "single"),
             ("space.domain", "{ min = [-2, -2], max = [1, 1] }"),
             ("space.domain.min", "[-2, -2]"),

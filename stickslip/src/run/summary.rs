@@ -157,10 +157,12 @@ impl Display for Summary {
         )?;
         if let Some(RelaxationState { residual, peaks, at_rest }) = self.relaxation {
             let state = if at_rest { "at rest" } else { "not at rest" };
-            writeln!(
-                f,
-                "  relaxation {state}: residual {residual:.2e} after {peaks} peaks of the kinetic energy"
-            )?;
+            // Only bodies on the common grid are stopped at peaks.
+            let stops = match peaks {
+                0 => String::new(),
+                _ => format!(" after {peaks} peaks of the kinetic energy"),
+            };
+            writeln!(f, "  relaxation {state}: residual {residual:.2e}{stops}")?;
         }
         if self.end.scaled_impulses > 0 {
             writeln!(

@@ -7,6 +7,8 @@
 //!
 //! Expected: the same bits of all particles, of the sums that tables hold, and of time. No tolerance.
 
+use crate::reference_free::several;
+use crate::reference_periodic::packing;
 use crate::threads::{damped, periodic, scene as crowd};
 use crate::trial::{STRESS_UPDATES, start, take_steps};
 use rayon::ThreadPoolBuilder;
@@ -70,7 +72,8 @@ fn among<X: Send>(text: &str, count: usize, say: impl Fn(&mut dyn Simulation) ->
     })
 }
 
-fn compare(name: &str, text: &str, steps: usize) {
+/// Ranks have the bits of one process, after so many steps.
+pub fn compare(name: &str, text: &str, steps: usize) {
     let mut alone = start(text);
     take_steps(&mut *alone, steps);
     let (wanted, known_alone, met) = (rows(&*alone), known(&*alone), contacts(&*alone));
@@ -176,7 +179,20 @@ fn in_space() {
     compare("linear, first", &crowd("3d", "linear", "first"), 60);
 }
 
+/// Bodies on grids of their own that touch through periodic faces.
+#[test]
+fn on_grids_of_their_own_between_periodic_faces() {
+    compare("a packing", &packing(), 200);
+}
+
 /// Bodies that are pulled, pressed and held at every particle, or all around.
+/// Bodies on grids of their own, with free rigid ones, a spring and a joint between them.
+#[test]
+fn on_grids_of_their_own_among_free_rigid_ones() {
+    compare("in the plane", &several("plane-strain"), 60);
+    compare("in space", &several("3d"), 20);
+}
+
 #[test]
 fn with_loads() {
     let loaded = |text: &str, along_z: &str| {

@@ -6,7 +6,7 @@
 use crate::trial::{RUBBER, norm, run_to, start, take_steps};
 use rayon::ThreadPoolBuilder;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
-use stickslip::door::{Simulation, StepError};
+use stickslip::door::{Simulation, StepError, WallState};
 
 /// A scene in the plane, of rubber (wave speed 36.7 m/s), with cells of this side.
 fn scene(cell: f64, rest: &str) -> String {
@@ -157,6 +157,40 @@ fn closed_faces_are_walls() {
         }
         assert!(simulation.contact_sums().is_empty(), "a face is no pair's");
     }
+}
+
+/// A block is held by a mirror beside it and a fixed face below, and pulled aside: what both faces give it, and gravity,
+/// is what it gains of momentum and spin.
+#[test]
+fn faces_that_hold_a_body_give_what_it_gains() {
+    let gravity = [0.3, -0.5].map(|g| g * WAVE * WAVE * 0.1);
+    let domain = "domain = { min = [0, 0], max = [4, 4], x_min = 'symmetry', y_min = 'fixed' }, interior =";
+    let rest = "[[bodies]]\nname = 'block'\nmaterial = 'rubber'\nshape.box = { min = [0, 0], max = [1, 1.5] }\n\
+                [outputs]\nreactions = ['x_min', 'y_min']\n";
+    let text = format!("gravity = [{}, {}]\n", gravity[0], gravity[1]) + &scene(0.125, rest);
+    let mut simulation = start(&text.replace("interior =", domain));
+    let (mut pulled, mut most) = (0.0, 0.0_f64);
+    for _ in 0..200 {
+        let (time, body) = (simulation.time(), simulation.bodies()[0].clone());
+        simulation.step(f64::INFINITY).expect("a step");
+        let dt = simulation.time() - time;
+        pulled += body.mass * dt * (body.position[0] * gravity[1] - body.position[1] * gravity[0]);
+        let (after, walls) = (simulation.bodies()[0].clone(), simulation.walls());
+        for (k, gravity) in gravity.into_iter().enumerate() {
+            let given = after.mass * gravity * simulation.time()
+                - walls.iter().map(|wall| wall.impulse[k]).sum::<f64>();
+            let off = after.mass * after.velocity[k] - given;
+            most = most.max(off.abs());
+        }
+        let middles = [[0.0, 2.0], [2.0, 0.0]];
+        let moment = |(wall, at): (&WallState, [f64; 2])| {
+            wall.moment[2] + at[0] * wall.impulse[1] - at[1] * wall.impulse[0]
+        };
+        let turned: f64 = walls.iter().zip(middles).map(moment).sum();
+        most = most.max((after.angular_momentum[2] - (pulled - turned)).abs());
+    }
+    println!("off by {most:e} N s of {}", 1500.0 * gravity[1] * simulation.time());
+    assert!(most < 1e-8 * 1500.0 * 0.05 * WAVE * WAVE * simulation.time(), "{most}");
 }
 
 /// A floor moves slowly under a block that is pressed on it: friction is mu times the push, however slow it moves. An

@@ -16,6 +16,7 @@ mod conjugate;
 mod coupling;
 mod direct;
 mod joint;
+mod layers;
 mod row;
 mod six;
 mod sparse;
@@ -182,7 +183,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         mechanism.links.extend(self.settings.joints.iter().map(|joint| Link::new(joint, bodies)));
     }
 
-    /// Gravity, loads and what joints push with change the momenta of free rigid bodies.
+    /// Gravity, loads, what joints push with and the layers of bodies on grids of their own change the momenta of free
+    /// rigid bodies.
     pub(super) fn push_free_bodies(&mut self, dt: T) {
         if self.workspace.mechanism.bodies.is_empty() {
             return;
@@ -210,6 +212,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
             }
         }
+        let touches = (&self.workspace.reference_touching.touches[..], dt);
+        self.workspace.reference_touching.rate = mechanism.add_layers(bodies, touches, &mut impulses);
         for (free, impulse) in mechanism.bodies.iter_mut().zip(&impulses) {
             let motion = bodies[free.index].motion.as_deref_mut().expect("free bodies are rigid");
             // After contact on the interpolated velocities, if there was any.

@@ -44,7 +44,8 @@ fn add<const D: usize>(
     is_first: bool,
     rigid: &[&dyn Rigid],
 ) {
-    let at = touch.at.space();
+    // Through a periodic face it acts where the first body is.
+    let at = if is_first { touch.at } else { touch.at - touch.away }.space();
     let push = touch.normal * (touch.area * touch.pressure() * dt);
     let rub = touch.traction * (touch.area * dt);
     // Of the first body on the second.
@@ -64,8 +65,11 @@ fn add<const D: usize>(
     sums.spread.add(touch.area, at);
     sums.gap += touch.area * touch.gap;
     sums.slip += touch.area * if touch.friction > 0.0 { touch.slip.norm() * dt } else { 0.0 };
-    if let Met::Rigid(r) = touch.met {
-        let speed = Vector::<f64, D>::of(rigid[r].velocity(at));
+    // What a free body gains is its own energy.
+    if let Met::Rigid(r) = touch.met
+        && !rigid[r].is_free()
+    {
+        let speed = Vector::<f64, D>::of(rigid[r].velocity((touch.at - touch.away).space()));
         sums.work += (push + rub).dot(speed);
     }
     sums.nodes += 1;

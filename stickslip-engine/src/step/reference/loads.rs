@@ -17,6 +17,7 @@ use crate::tensor::{Matrix, Vector, cross};
 use stickslip_reference::contact::Deforming;
 
 /// What loads do to these bodies in a step.
+#[derive(Debug, Default)]
 pub struct ReferenceLoads<const D: usize> {
     /// Of each body.
     pub bodies: Vec<OfBody<D>>,
@@ -24,13 +25,16 @@ pub struct ReferenceLoads<const D: usize> {
 }
 
 /// What a body's nodes take.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct OfBody<const D: usize> {
     /// M_I [kg]; none where nothing holds it.
     pub inertia: Vec<Vector<f64, D>>,
+    /// Velocities half a step before, where something holds it [m/s].
+    begun: Vec<Vector<f64, D>>,
 }
 
 /// A point of a load in a step.
+#[derive(Debug)]
 struct LoadedPoint<const D: usize> {
     load: usize,
     /// Place of its body among these.
@@ -41,6 +45,8 @@ struct LoadedPoint<const D: usize> {
     /// Velocity half a step before [m/s].
     begun: Vector<f64, D>,
     measure: f64,
+    /// What supports keep at nodes by their inertia [N].
+    kept: Vec<(usize, Vector<f64, D>)>,
 }
 
 impl<T: Laned, const D: usize> Engine<T, D> {
@@ -58,10 +64,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 self.feel_reference_load((load, place), dt, &mut felt)?;
             }
         }
-        for (nodes, OfBody { inertia }) in self.state.references.nodes.iter().zip(&mut felt.bodies) {
+        for (nodes, OfBody { inertia, begun }) in self.state.references.nodes.iter().zip(&mut felt.bodies) {
             if inertia.is_empty() {
                 continue;
             }
+            begun.clone_from(&nodes.velocities);
             for (node, masters, shares) in nodes.form.followers.iter() {
                 let own = inertia[node];
                 for (&master, share) in masters.iter().zip(shares) {
@@ -124,14 +131,45 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 });
             }
             let (at, measure) = (particle.position, point.measure);
-            all.points.push(LoadedPoint { load: number, place, weights, felt, at, begun: velocity, measure });
+            all.points.push(LoadedPoint {
+                load: number,
+                place,
+                weights,
+                felt,
+                at,
+                begun: velocity,
+                measure,
+                kept: Vec::new(),
+            });
         }
         Ok(())
     }
 }
 
 impl<const D: usize> ReferenceLoads<D> {
-    /// What loads did to these bodies in a step, load by load: what supports keep by their inertia they do not give.
+    /// Takes note of what supports keep by their inertia as the nodes are accelerated, and do not give.
+    pub(super) fn keep(&mut self, bodies: &[Deforming<'_, D>], dt: f64) {
+        for point in self.points.iter_mut().filter(|point| point.felt.inertia != Vector::ZERO) {
+            let nodes = &*bodies[point.place].interior;
+            let begun = &self.bodies[point.place].begun;
+            let (inertia, kept) = (point.felt.inertia, &mut point.kept);
+            let mut keep = |node: usize, share: f64| {
+                let change = nodes.velocities[node] - begun[node];
+                kept.push((node, Vector::from_fn(|i| -inertia[i] * share * change[i] / dt)));
+            };
+            let weights = &point.weights;
+            weights.each(|k, value, _| {
+                let node = weights.node + nodes.form.offsets[k] as usize;
+                match nodes.form.followers.of(node) {
+                    None => keep(node, value.abs()),
+                    Some((masters, shares)) => (masters.iter().zip(shares))
+                        .for_each(|(&master, share)| keep(master as usize, (value * share).abs())),
+                }
+            });
+        }
+    }
+
+    /// What loads did to these bodies in a step, load by load, by the velocities that move them.
     pub(super) fn booked(&self, bodies: &[Deforming<'_, D>], dt: f64) -> Vec<(usize, LoadSums)> {
         let booked = self.points.chunk_by(|a, b| a.load == b.load).map(|points| {
             let mut sums = LoadSums::default();
@@ -141,16 +179,19 @@ impl<const D: usize> ReferenceLoads<D> {
             for point in points {
                 let nodes = &*bodies[point.place].interior;
                 let now = nodes.at(&point.weights, &nodes.velocities);
-                let (mean, change) = ((now + point.begun) * 0.5, (now - point.begun) * (1.0 / dt));
-                let force =
-                    Vector::<f64, D>::from_fn(|i| point.felt.force[i] - point.felt.inertia[i] * change[i]);
+                let (mut force, mean) = (point.felt.force, (now + point.begun) * 0.5);
+                sums.work += force.dot(mean) * dt;
+                let begun = &self.bodies[point.place].begun;
+                for &(node, kept) in &point.kept {
+                    force += kept;
+                    sums.work += 0.5 * dt * kept.dot(nodes.velocities[node] + begun[node]);
+                }
                 let impulse = (force * dt).space();
                 let moment = cross((point.at - middle).space(), impulse);
                 for k in 0..3 {
                     sums.impulse[k] += impulse[k];
                     sums.moment[k] += moment[k];
                 }
-                sums.work += force.dot(mean) * dt;
             }
             (points[0].load, sums)
         });

@@ -8,6 +8,7 @@
 //! press                   f_I += N_I A (p n + tau)
 //! load                    supports and loads, on points of bodies
 //! accelerate              v_I += dt (f_I / M_I + g)
+//! ...                     free rigid bodies, springs
 //! slip                    what the layer stores in shear
 //! advance                 x_I += dt v_I
 //! strain                  F from places, sigma = law(F), f_I = -sum V P grad N_I
@@ -15,6 +16,7 @@
 
 mod books;
 mod loads;
+mod rest;
 mod rigid;
 mod springs;
 mod walls;
@@ -22,12 +24,13 @@ mod walls;
 pub(super) use springs::center as center_of;
 
 use super::Engine;
+use super::among::Among;
+use super::state::Settings;
 use super::walls::middle;
 use crate::body::{Body, Particle, Totals};
-use crate::contact::Rules;
 use crate::door::{RestoreError, SavedState, StepError};
-use crate::geometry::Shape;
-use crate::geometry::form::{Form, NoForm};
+use crate::geometry::form::{Form, HeldFaces, NoForm};
+use crate::geometry::{MirroredShape, Shape};
 use crate::grid::Disjoint;
 use crate::lanes::{Laned, Processor};
 use crate::load::LoadSums;
@@ -35,13 +38,16 @@ use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
 use crate::scene::{ContactLaw, FrictionMemory, Interior as Kind, Problem, Scene, StartVelocities};
 use crate::tensor::{Matrix, Vector, cross};
 use crate::threads::each;
+use loads::ReferenceLoads;
+use rest::{Begun, Slowing};
 use rigid::RigidBody;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Partner, Rigid, STIFFNESS, Touch, find, parted, press, slip,
+    Deforming, Friction, Memory, Met, Neighbours, Partner, PeriodLengths, Rigid, STIFFNESS, Touch, find,
+    parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -51,7 +57,8 @@ use walls::RigidWall;
 pub struct ReferenceBody<const D: usize> {
     /// Its number among all bodies.
     pub body: usize,
-    shape: Shape,
+    /// Its undeformed shape, with its images behind faces that hold it.
+    shape: MirroredShape,
     surface: Vec<SurfacePoint<D>>,
     /// Moduli of its longitudinal and its shear wave at rest [Pa].
     moduli: [f64; 2],
@@ -74,6 +81,22 @@ pub struct References<const D: usize> {
     pub touching: Vec<Memory>,
     /// What each body's part of the layers is.
     pub layers: Vec<Layers>,
+    /// Accelerations of each one's nodes in the last step of dynamic relaxation, before damping [m/s^2].
+    pub accelerations: Vec<Vec<Vector<f64, D>>>,
+}
+
+/// The points that touch in a step.
+#[derive(Debug, Default)]
+pub struct Touching<const D: usize> {
+    /// Those that touch.
+    pub touches: Vec<Touch<D>>,
+    /// Those that did before.
+    parted: Vec<Memory>,
+    /// What the layers on free rigid bodies add to the square of the fastest motion [1/s^2].
+    pub rate: f64,
+    /// What the nodes had before, where it is asked for.
+    begun: Option<(Begun<D>, Slowing)>,
+    loads: ReferenceLoads<D>,
 }
 
 /// The layers of a body's contact after a step.
@@ -95,13 +118,16 @@ pub(crate) struct SavedNodes {
     velocities: Vec<f64>,
     forces: Vec<f64>,
     layers: Layers,
+    /// None where nothing relaxes.
+    #[serde(default)]
+    accelerations: Vec<f64>,
 }
 
 /// What a rank tells the others in a step.
 #[derive(Default, Serialize, Deserialize)]
 struct Homeward {
-    /// Bodies that are here: what damping took [J], and the velocities of the nodes after forces [m/s].
-    bodies: Vec<(usize, f64, Vec<f64>)>,
+    /// Bodies that are here: the velocities of the nodes after forces [m/s].
+    bodies: Vec<(usize, Vec<f64>)>,
     /// What loads on them did.
     loads: Vec<(usize, LoadSums)>,
 }
@@ -157,17 +183,17 @@ impl<const D: usize> ReferenceBody<D> {
             allowed: "shapes of two cells and more; or interior = \"grid\"".to_string(),
             help: None,
         };
-        let form = Arc::new(Form::<D>::new(&body.shape, scene.discretization.cell).map_err(no_grid)?);
+        let (cell, faces) = (scene.discretization.cell, scene.held_faces(body));
+        let form = Arc::new(Form::<D>::new(&body.shape, cell, faces).map_err(no_grid)?);
         let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
-        let sides = body.shape.bounds(D).map_or([f64::INFINITY; 3], |bounds| bounds.size());
-        let width = sides[..D].iter().copied().fold(f64::INFINITY, f64::min);
+        let width = width::<D>(&body.shape, &faces);
         let nodes =
             Interior::new(form.clone(), material.density, |place| Vector::of(velocity(place.space())));
         let surface = points(&body.shape, &form);
         let wave = (modulus / material.density).sqrt();
         let constants = ReferenceBody {
             body: number,
-            shape: body.shape.clone(),
+            shape: MirroredShape::new(&body.shape, faces.mirrors(), D),
             wave,
             transit: width / wave,
             courant: in_contact(&form, &surface),
@@ -179,9 +205,24 @@ impl<const D: usize> ReferenceBody<D> {
     }
 }
 
+/// Narrowest side of a body, of half a model that of the whole [m].
+fn width<const D: usize>(shape: &Shape, faces: &HeldFaces) -> f64 {
+    let sides = shape.bounds(D).map_or([f64::INFINITY; 3], |bounds| bounds.size());
+    let narrowest = |images: &dyn Fn(usize) -> f64| {
+        (0..D).fold(f64::INFINITY, |least, axis| least.min(sides[axis] * images(axis)))
+    };
+    let whole = narrowest(&|axis| faces.images(axis));
+    if whole.is_finite() { whole } else { narrowest(&|_| 1.0) }
+}
+
 /// Transits of a longitudinal wave through the narrowest side of a body in which friction on it follows pressure, where
 /// no rule says how: a block that a spring drags slowly rubs by its coefficient from some four on.
 const TRANSITS: f64 = 5.0;
+
+/// After which lengths everything is there again for the bodies of a scene.
+pub(super) fn lengths<const D: usize>(scene: &Scene) -> PeriodLengths<D> {
+    PeriodLengths(Vector::of(scene.periods()))
+}
 
 /// Whether a body of a scene is one.
 pub(super) fn is_reference(scene: &Scene, body: usize) -> bool {
@@ -194,17 +235,33 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.settings.references.binary_search_by_key(&body, |reference| reference.body).ok()
     }
 
-    /// Takes the bodies on grids of their own through a step.
+    /// Finds where bodies on grids of their own touch, and gives their nodes the velocities that contact, loads and stress
+    /// give them. Free rigid bodies and springs feel what touches later in the step.
     ///
     /// # Errors
-    /// A particle of theirs has a fault, or a function from outside no answer.
-    pub(super) fn step_references(&mut self, dt: T) -> Result<(), StepError> {
+    /// A function from outside that has no answer.
+    pub(super) fn push_references(&mut self, dt: T) -> Result<(), StepError> {
         self.workspace.reference_signal = None;
         if self.settings.references.is_empty() {
             return Ok(());
         }
         let start = Instant::now();
         self.touch_references(dt.f64())?;
+        self.watch.lap("contact", start);
+        Ok(())
+    }
+
+    /// Moves them, once the velocities of all bodies are known: what the layers store in shear follows from these.
+    ///
+    /// # Errors
+    /// A particle of theirs has a fault.
+    pub(super) fn move_references(&mut self, dt: T) -> Result<(), StepError> {
+        if self.settings.references.is_empty() {
+            return Ok(());
+        }
+        let start = Instant::now();
+        self.slow_references(dt.f64());
+        self.slip_references(dt.f64());
         self.watch.lap("contact", start);
         let start = Instant::now();
         let found = self.strain_references(dt);
@@ -215,29 +272,18 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         Ok(())
     }
 
-    /// Forces of contact and loads, and the motion of the nodes.
+    /// Forces of contact and loads, and the velocities that follow.
     fn touch_references(&mut self, dt: f64) -> Result<(), StepError> {
         let gravity = Vector::<f64, D>::of(self.settings.gravity.over_step(self.state.time, dt));
-        let loads = self.feel_reference_loads(dt)?;
-        let damping = self.settings.damping.double();
+        let begun =
+            self.measures_balance().then(|| (Begun::of(&self.state.references.nodes), self.slowing(dt)));
+        let mut loads = self.feel_reference_loads(dt)?;
         let walls = self.rigid_walls();
         let Engine { settings, state, workspace, among, .. } = self;
-        let rigid: Vec<RigidBody<'_>> =
-            settings.rigid.iter().filter_map(|&body| RigidBody::new(body, &state.bodies[body])).collect();
-        let rigid: Vec<&dyn Rigid> = (rigid.iter().map(|rigid| rigid as &dyn Rigid))
-            .chain(walls.iter().map(|wall| wall as &dyn Rigid))
-            .collect();
+        let rigid = rigid_bodies(&settings.rigid, &state.bodies, settings.lengths);
+        let rigid = all_rigid(&rigid, &walls);
         let count = state.bodies.len();
-        let nodes = state.references.nodes.iter_mut();
-        let mut bodies: Vec<Deforming<'_, D>> = (settings.references.iter().zip(nodes))
-            .map(|(constants, interior)| Deforming {
-                body: constants.body,
-                interior,
-                shape: &constants.shape,
-                surface: &constants.surface,
-                moduli: constants.moduli,
-            })
-            .collect();
+        let mut bodies = deforming(&settings.references, &mut state.references.nodes);
         let meet = |a: usize, partner: Partner| {
             let other = match partner {
                 Partner::Deforming(b) => settings.references[b].body,
@@ -247,57 +293,64 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 || settings.rules.rule(settings.rules.number(settings.references[a].body, other)).law
                     != ContactLaw::None
         };
-        let rule = |touch: &Touch<D>| match (touch.memory.partner as usize).checked_sub(count) {
-            Some(wall) => walls::friction(settings.walls[wall].face),
-            None => friction((&settings.rules, &settings.references), touch),
-        };
-        let all = (&bodies[..], &rigid[..]);
-        let mut touches = find(all, &state.references.touching, &meet, &mut workspace.neighbours);
-        let parted: Vec<Memory> = parted(&state.references.touching, &touches).copied().collect();
-        press(&mut bodies, &mut touches, &rule);
+        let known = &state.references.touching;
+        let mut touches = find((&bodies, &rigid), known, &meet, &mut workspace.neighbours, settings.lengths);
+        let parted: Vec<Memory> = parted(known, &touches).copied().collect();
+        press(&mut bodies, &mut touches, &|touch| friction(settings, touch, count));
+        workspace.reference_walls.clear();
         let mut own = Homeward::default();
         for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {
             // Of several ranks one moves the nodes of a body, that with its particles.
             if state.bodies[body.body].particles.is_empty() {
                 continue;
             }
-            let before = damping.acts().then(|| body.interior.velocities.clone());
-            body.interior.accelerate_with(dt, gravity, &loads.inertia);
-            let damped = before
-                .map(|before| damp(body.interior, &before, |v, start| damping.damped(v, start, dt)))
-                .unwrap_or_default();
-            own.bodies.push((
-                place,
-                damped,
-                if among.is_some() { flat(&body.interior.velocities) } else { Vec::new() },
-            ));
-        }
-        own.loads = loads.booked(&bodies, dt);
-        let all = match among {
-            Some(among) => among.gathered(&own),
-            None => vec![own],
-        };
-        let (mut moved, mut booked) = (Vec::new(), Vec::new());
-        for one in all {
-            moved.extend(one.bodies);
-            booked.extend(one.loads);
-        }
-        moved.sort_by_key(|(place, ..)| *place);
-        booked.sort_by_key(|(load, _)| *load);
-        for (place, damped, velocities) in moved {
-            state.damping += damped;
-            if !velocities.is_empty() {
-                bodies[place].interior.velocities = vectors(&velocities);
+            let is_held = body.interior.form.held.is_some() && !state.walls.is_empty();
+            let before = is_held.then(|| body.interior.velocities.clone());
+            body.interior.accelerate(dt, gravity, &loads.inertia);
+            if let Some(before) = before {
+                let reactions = body.interior.reactions(&before, gravity, &loads.inertia, dt);
+                RigidWall::book_held(&walls, &mut workspace.reference_walls, (body.body, &reactions), count);
+            }
+            if among.is_some() {
+                own.bodies.push((place, flat(&body.interior.velocities)));
             }
         }
-        booked.into_iter().for_each(|(load, sums)| state.loads[load].add(&sums));
-        let place_of = |body: usize| settings.references.binary_search_by_key(&body, |own| own.body).ok();
-        let springs = settings.springs.iter().zip(&state.springs).map(|(spring, sums)| {
-            let places = spring.ends.each_ref().map(|end| place_of(end.body));
-            let acts = places.iter().any(Option::is_some);
-            acts.then(|| springs::pull((spring, sums.way), places, (&state.bodies, &mut bodies), dt))
-        });
-        workspace.springs.own = springs.collect();
+        for (place, velocities) in gathered(among.as_ref(), own).into_iter().flat_map(|one| one.bodies) {
+            bodies[place].interior.velocities = vectors(&velocities);
+        }
+        loads.keep(&bodies, dt);
+        workspace.reference_touching = Touching { touches, parted, rate: 0.0, begun, loads };
+        Ok(())
+    }
+
+    /// Slows the nodes down once all has acted on them, and books what loads did.
+    fn slow_references(&mut self, dt: f64) {
+        let Engine { settings, state, workspace, among, .. } = self;
+        let Touching { begun, loads, .. } = &workspace.reference_touching;
+        let mut bodies = deforming(&settings.references, &mut state.references.nodes);
+        if let Some((begun, slowing)) = begun {
+            let here = |body: usize| !state.bodies[body].particles.is_empty();
+            let accelerations = &mut state.references.accelerations;
+            begun.slow_down((&mut bodies, accelerations), slowing, (&mut workspace.sums.nodes, &here));
+        }
+        if !settings.loads.is_empty() {
+            let own = Homeward { loads: loads.booked(&bodies, dt), ..Homeward::default() };
+            let mut booked: Vec<_> =
+                gathered(among.as_ref(), own).into_iter().flat_map(|one| one.loads).collect();
+            booked.sort_by_key(|(load, _)| *load);
+            booked.into_iter().for_each(|(load, sums)| state.loads[load].add(&sums));
+        }
+    }
+
+    /// What the layers store and lose by the velocities of the step, which then moves the nodes.
+    fn slip_references(&mut self, dt: f64) {
+        let walls = self.rigid_walls();
+        let Engine { settings, state, workspace, among, .. } = self;
+        let Touching { touches, parted, .. } = &mut workspace.reference_touching;
+        let rigid = rigid_bodies(&settings.rigid, &state.bodies, settings.lengths);
+        let rigid = all_rigid(&rigid, &walls);
+        let count = state.bodies.len();
+        let bodies = deforming(&settings.references, &mut state.references.nodes);
         let layers = &mut state.references.layers;
         layers.resize(bodies.len(), Layers::default());
         layers.iter_mut().for_each(|own| *own = Layers { energy: 0.0, lingers: (own.lingers - dt).max(0.0) });
@@ -305,7 +358,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             layers[side].energy += energy;
             layers[side].lingers = settings.references[side].transit;
         };
-        for touch in &touches {
+        for touch in &*touches {
             match touch.met {
                 Met::Deforming(b, _) => {
                     [touch.side, b].iter().for_each(|&side| store(side, 0.5 * touch.energy()))
@@ -313,27 +366,29 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 Met::Rigid(_) => store(touch.side, touch.energy()),
             }
         }
-        state.references.touching = slip(&bodies, &rigid, (&mut touches, dt), &rule);
+        state.references.touching =
+            slip(&bodies, &rigid, (touches, dt), &|touch| friction(settings, touch, count));
         workspace.neighbours.moved((&bodies, &rigid), dt);
-        books::book(&mut workspace.reference_touches, &rigid, (&touches, &parted, dt), count);
-        workspace.reference_walls.clear();
+        books::book(&mut workspace.reference_touches, &rigid, (touches, parted, dt), count);
         if !state.walls.is_empty() {
             let here = |body: usize| !state.bodies[body].particles.is_empty();
-            RigidWall::book(&walls, &mut workspace.reference_walls, (&touches, dt), (here, count));
+            RigidWall::book(&walls, &mut workspace.reference_walls, (touches, dt), (here, count));
         }
         if let Some(among) = among {
             workspace.reference_touches.retain(|touch| among.keeps(touch.bodies));
         }
         bodies.into_iter().for_each(|body| body.interior.advance(dt));
-        Ok(())
     }
 
     /// The closed faces of the domain.
-    fn rigid_walls(&self) -> Vec<RigidWall> {
+    fn rigid_walls(&self) -> Vec<RigidWall<D>> {
         let Some(corners) = self.settings.domain else { return Vec::new() };
         let (lattice, bodies) = (&self.settings.lattice, self.state.bodies.len());
         let walls = self.settings.walls.iter().zip(bodies..);
-        walls.map(|(wall, number)| RigidWall::new(number, wall, middle(wall, lattice, corners))).collect()
+        let rigid = |(wall, number)| {
+            RigidWall::new(number, wall, middle(wall, lattice, corners), self.settings.lengths)
+        };
+        walls.map(rigid).collect()
     }
 
     /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
@@ -363,15 +418,20 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// undeformed lengths of each. Those that touch others, or did so just now, have shorter steps.
     fn fastest_reference(&self, found: &[Found<T>]) -> f64 {
         let courant = self.settings.time.courant;
+        // Nothing is asked of the way to rest: its steps are the longest that are stable.
+        let least = if self.settings.time.relax.is_some() { 0.0 } else { 1.0 / LARGER_STEPS };
         let of_body = |place: usize| {
             let (own, wave) = (&self.settings.references[place], found[place].signal.f64());
-            let alone = wave * (1.0 / LARGER_STEPS).max(courant / ALONE);
+            let alone = wave * least.max(courant / ALONE);
             if self.state.references.layers[place].lingers == 0.0 {
                 return alone;
             }
             alone.max(wave.max(own.wave) * (USUAL / SAFE).max(courant) / own.courant)
         };
         let waves = (0..found.len()).map(of_body).fold(0.0, f64::max);
+        // Both share the same w = 2/dt: squares add up.
+        let rocking = 0.5 * self.workspace.reference_touching.rate.sqrt() * self.settings.lattice.cell.f64();
+        let waves = waves.hypot(rocking * (USUAL / SAFE).max(courant));
         let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
         let speed = fastest.fold(0.0, |most: f64, v| most.max(v.dot(*v))).sqrt();
         waves.max(speed)
@@ -384,7 +444,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let orbit = cross(center, momentum);
         let turn = [0, 1, 2].map(|k| totals.angular_momentum[k] - orbit[k]);
         let mut inertia = Matrix([[0.0; 3]; 3]);
-        for (mass, at) in nodes.masses.iter().zip(&nodes.places) {
+        for (mass, at, _) in nodes.carried() {
             let arm = Vector(at.space()) - Vector(center);
             for i in 0..3 {
                 for j in 0..3 {
@@ -427,7 +487,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         totals.strain += self.state.references.layers.get(place).map_or(0.0, |layers| layers.energy);
         totals.momentum = nodes.momentum().space();
         let mut sums = [[0.0; 3]; 2];
-        for ((mass, place), velocity) in nodes.masses.iter().zip(&nodes.places).zip(&nodes.velocities) {
+        for (mass, place, velocity) in nodes.carried() {
             let turn = cross(place.space(), velocity.space());
             for k in 0..3 {
                 sums[0][k] += mass * turn[k];
@@ -441,7 +501,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The nodes of these bodies as data, and the points that touch. Of several ranks the first knows the forces on
     /// all.
     pub(super) fn saved_nodes(&self) -> (Vec<SavedNodes>, Vec<Memory>) {
-        let References { nodes, touching, layers } = &self.state.references;
+        let References { nodes, touching, layers, accelerations } = &self.state.references;
         let mut saved: Vec<SavedNodes> = (nodes.iter().enumerate())
             .map(|(place, nodes)| SavedNodes {
                 body: self.settings.references[place].body,
@@ -449,6 +509,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 velocities: flat(&nodes.velocities),
                 forces: flat(&nodes.forces),
                 layers: layers.get(place).copied().unwrap_or_default(),
+                accelerations: accelerations.get(place).map_or(Vec::new(), |all| flat(all)),
             })
             .collect();
         if self.among.is_some() && !saved.is_empty() {
@@ -519,7 +580,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// Begins with these nodes.
     pub(super) fn begin_nodes(&mut self, carried: CarriedNodes) {
-        let References { nodes, touching, layers } = &mut self.state.references;
+        let References { nodes, touching, layers, accelerations } = &mut self.state.references;
+        accelerations.clear();
         layers.resize(nodes.len(), Layers::default());
         for (place, saved) in &carried.nodes {
             saved.put_in(&mut nodes[*place]);
@@ -588,6 +650,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     pub(super) fn take_up_nodes(&mut self, saved: &[SavedNodes], touching: Vec<Memory>) {
         self.state.references.nodes.iter_mut().zip(saved).for_each(|(nodes, saved)| saved.put_in(nodes));
         self.state.references.layers = saved.iter().map(|saved| saved.layers).collect();
+        self.state.references.accelerations = if saved.iter().all(|saved| saved.accelerations.is_empty()) {
+            Vec::new()
+        } else {
+            saved.iter().map(|saved| vectors(&saved.accelerations)).collect()
+        };
         self.state.references.touching = touching;
     }
 }
@@ -595,9 +662,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 impl SavedNodes {
     /// Whether they are those of such a body.
     fn fits<const D: usize>(&self, nodes: &Interior<D>) -> bool {
-        [&self.places, &self.velocities, &self.forces]
-            .iter()
-            .all(|all| all.len() == D * nodes.places.len() && all.iter().all(|x| x.is_finite()))
+        let fits = |all: &[f64]| all.len() == D * nodes.places.len() && all.iter().all(|x| x.is_finite());
+        [&self.places, &self.velocities, &self.forces].iter().all(|all| fits(all))
+            && (self.accelerations.is_empty() || fits(&self.accelerations))
     }
 
     fn put_in<const D: usize>(&self, nodes: &mut Interior<D>) {
@@ -624,28 +691,59 @@ fn vectors<const D: usize>(all: &[f64]) -> Vec<Vector<f64, D>> {
     all.as_chunks().0.iter().map(|v| Vector(*v)).collect()
 }
 
-/// Damps the velocities of nodes that had others before the forces of the step, and says what that took [J].
-fn damp<const D: usize>(
-    nodes: &mut Interior<D>,
-    before: &[Vector<f64, D>],
-    damped: impl Fn(Vector<f64, D>, Vector<f64, D>) -> Vector<f64, D>,
-) -> f64 {
-    let mut taken = 0.0;
-    for ((velocity, start), mass) in nodes.velocities.iter_mut().zip(before).zip(&nodes.masses) {
-        let left = damped(*velocity, *start);
-        taken += 0.5 * mass * (velocity.dot(*velocity) - left.dot(left));
-        *velocity = left;
+/// What each rank says; what one says that is alone.
+fn gathered<T: Laned>(among: Option<&Among<T>>, own: Homeward) -> Vec<Homeward> {
+    match among {
+        Some(among) => among.gathered(&own),
+        None => vec![own],
     }
-    nodes.follow();
-    taken
 }
 
-/// Friction at a point, by the rule of its pair; without a memory there, with that of the body that is slower.
+/// Bodies as contact sees them, with their nodes.
+fn deforming<'a, const D: usize>(
+    references: &'a [ReferenceBody<D>],
+    nodes: &'a mut [Interior<D>],
+) -> Vec<Deforming<'a, D>> {
+    let of = |(constants, interior): (&'a ReferenceBody<D>, &'a mut Interior<D>)| Deforming {
+        body: constants.body,
+        interior,
+        shape: &constants.shape,
+        surface: &constants.surface,
+        moduli: constants.moduli,
+    };
+    references.iter().zip(nodes).map(of).collect()
+}
+
+/// Rigid bodies as contact sees them.
+fn rigid_bodies<'a, T, const D: usize>(
+    rigid: &[usize],
+    bodies: &'a [Body<T, D>],
+    lengths: PeriodLengths<D>,
+) -> Vec<RigidBody<'a>> {
+    rigid.iter().filter_map(|&body| RigidBody::new(body, &bodies[body], lengths)).collect()
+}
+
+/// These and closed faces.
+fn all_rigid<'a, const D: usize>(
+    bodies: &'a [RigidBody<'_>],
+    walls: &'a [RigidWall<D>],
+) -> Vec<&'a dyn Rigid> {
+    let bodies = bodies.iter().map(|rigid| rigid as &dyn Rigid);
+    bodies.chain(walls.iter().map(|wall| wall as &dyn Rigid)).collect()
+}
+
+/// Friction at a point, by its face or the rule of its pair, where there are so many bodies; without a memory there,
+/// with that of the body that is slower.
 fn friction<T: Laned, const D: usize>(
-    (rules, references): (&Rules<T>, &[ReferenceBody<D>]),
+    settings: &Settings<T, D>,
     touch: &Touch<D>,
+    bodies: usize,
 ) -> Friction {
     let [a, b] = [touch.memory.body as usize, touch.memory.partner as usize];
+    if let Some(wall) = b.checked_sub(bodies) {
+        return walls::friction(settings.walls[wall].face);
+    }
+    let (rules, references) = (&settings.rules, &settings.references);
     let rule = rules.rule(rules.number(a, b));
     let double = rule.friction.double();
     let own = references[touch.side].memory;

@@ -1,5 +1,6 @@
 //! Where a grid lies over a shape.
 
+use super::held::HeldFaces;
 use super::spline::WIDTH;
 use super::{MOST_NODES, NoForm};
 use crate::geometry::{Bounds, Shape};
@@ -18,14 +19,15 @@ impl<const D: usize> Frame<D> {
     /// That of a grid of cells of this side over a shape, turned as the shape is, and its nodes along each axis.
     ///
     /// The grid lies evenly over the shape's box: so a face that is a whole number of cells from the other has nodes
-    /// on it, and there is one node beyond.
+    /// on it, and there is one node beyond. Where faces of the domain hold the body, it lies along them with nodes on
+    /// them.
     ///
     /// # Errors
-    /// The shape has no bounds, or is thinner than two cells, or the grid is too large.
-    pub fn over(shape: &Shape, cell: f64) -> Result<(Self, [usize; D]), NoForm> {
-        let (bounds, turn) = upright::<D>(shape)?;
+    /// The shape has no bounds, or is thinner than two cells with its images, or the grid is too large.
+    pub fn over(shape: &Shape, cell: f64, faces: &HeldFaces) -> Result<(Self, [usize; D]), NoForm> {
+        let (bounds, turn) = upright::<D>(shape, faces)?;
         let size = bounds.size();
-        let across = size[..D].iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let across = (0..D).fold(f64::INFINITY, |least, a| least.min(size[a] * faces.images(a)));
         if across < 2.0 * cell * (1.0 - 1e-9) {
             return Err(NoForm::Thin(across));
         }
@@ -35,8 +37,12 @@ impl<const D: usize> Frame<D> {
             return Err(NoForm::Large(nodes));
         }
         let middle = bounds.middle();
-        let zero =
-            std::array::from_fn(|a| if a < D { middle[a] - cell * (0.5 * spans[a] + 1.0) } else { 0.0 });
+        let first = |a: usize| match faces.0[a] {
+            [Some(lower), _] => lower.at,
+            [None, Some(upper)] => upper.at - cell * spans[a],
+            _ => middle[a] - cell * (0.5 * spans[a]),
+        };
+        let zero = std::array::from_fn(|a| if a < D { first(a) - cell } else { 0.0 });
         let origin = Vector::of(turn.forward(zero));
         let axes = std::array::from_fn(|a| {
             Vector::of(turn.forward(std::array::from_fn(|k| zero[k] + f64::from(u8::from(k == a))))) - origin
@@ -76,10 +82,12 @@ impl Turn {
     }
 }
 
-/// The box of a shape before it is turned, and its turn.
-fn upright<const D: usize>(shape: &Shape) -> Result<(Bounds, Turn), NoForm> {
+/// The box of a shape before it is turned, and its turn; along faces that hold it, its box as it is.
+fn upright<const D: usize>(shape: &Shape, faces: &HeldFaces) -> Result<(Bounds, Turn), NoForm> {
     let (shape, of) = match shape {
-        Shape::Rotated { shape, center, axis, angle } => (&**shape, Some((*center, *axis, *angle))),
+        Shape::Rotated { shape, center, axis, angle } if faces.is_empty() => {
+            (&**shape, Some((*center, *axis, *angle)))
+        }
         _ => (shape, None),
     };
     let bounds = shape.bounds(D).filter(Bounds::is_finite).ok_or(NoForm::Unbounded)?;

@@ -2,12 +2,14 @@
 
 pub mod cut;
 mod frame;
+mod held;
 mod linear;
 mod masses;
 mod outer;
 pub mod spline;
 
 pub use frame::Frame;
+pub use held::{Carried, Held, HeldFace, HeldFaces, Reaction, Turned};
 pub use outer::Followers;
 
 use crate::geometry::Shape;
@@ -43,6 +45,10 @@ pub struct Form<const D: usize> {
     pub node_volumes: Vec<f64>,
     /// Nodes that follow others.
     pub followers: Followers,
+    /// Faces of the domain that hold the body.
+    pub faces: HeldFaces,
+    /// What they hold, if there are some.
+    pub held: Option<Box<Held<D>>>,
 }
 
 /// A cell between the knots of the splines.
@@ -93,12 +99,12 @@ impl<const D: usize> Form<D> {
     /// Nodes that a place sees.
     pub const NODES: usize = WIDTH.pow(D as u32);
 
-    /// The grid of cells of this side over a shape.
+    /// The grid of cells of this side over a shape, which faces of the domain hold.
     ///
     /// # Errors
-    /// The shape has no bounds, or is thinner than two cells, or its grid is too large.
-    pub fn new(shape: &Shape, cell: f64) -> Result<Self, NoForm> {
-        let (frame, counts) = Frame::over(shape, cell)?;
+    /// The shape has no bounds, or is thinner than two cells with its images, or its grid is too large.
+    pub fn new(shape: &Shape, cell: f64, faces: HeldFaces) -> Result<Self, NoForm> {
+        let (frame, counts) = Frame::over(shape, cell, &faces)?;
         let mut form = Form {
             cell,
             frame,
@@ -109,6 +115,8 @@ impl<const D: usize> Form<D> {
             volumes: Vec::new(),
             node_volumes: Vec::new(),
             followers: Followers::default(),
+            faces,
+            held: None,
         };
         form.offsets = (0..Self::NODES).map(|k| form.node(digits(k, [WIDTH; D])) as u32).collect();
         form.fill(shape);
@@ -118,6 +126,7 @@ impl<const D: usize> Form<D> {
         let reached = form.reached(shape);
         form.share_out(&reached)?;
         form.weigh(shape);
+        form.hold_nodes();
         Ok(form)
     }
 
@@ -164,14 +173,27 @@ impl<const D: usize> Form<D> {
 
     /// Followers take the values of what they follow: a_s = sum e a_m.
     pub fn follow(&self, values: &mut [Vector<f64, D>]) {
+        if let Some(held) = &self.held {
+            return held.follow(&self.followers, values);
+        }
         for (node, masters, shares) in self.followers.iter() {
             let all = masters.iter().zip(shares);
             values[node] = all.fold(Vector::ZERO, |sum, (&m, &share)| sum + values[m as usize] * share);
         }
     }
 
+    /// The same of places: those behind faces lie where the images of what they follow lie.
+    pub fn follow_places(&self, places: &mut [Vector<f64, D>]) {
+        self.follow(places);
+        let shifts = self.held.iter().flat_map(|held| &held.shifts);
+        self.followers.nodes.iter().zip(shifts).for_each(|(&node, shift)| places[node as usize] += *shift);
+    }
+
     /// What acts on followers acts on those that they follow: f_m += e f_s.
     pub fn gather(&self, values: &mut [Vector<f64, D>]) {
+        if let Some(held) = &self.held {
+            return held.gather(&self.followers, values);
+        }
         for (node, masters, shares) in self.followers.iter() {
             let own = std::mem::replace(&mut values[node], Vector::ZERO);
             for (&master, &share) in masters.iter().zip(shares) {
@@ -254,7 +276,7 @@ impl<const D: usize> Form<D> {
             let weights = self.weights(*place);
             weights.each(|k, value, _| own[weights.node + self.offsets[k] as usize] += volume * value);
         }
-        (self.node_volumes, self.followers) = outer::follow(self, &own, reached)?;
+        (self.node_volumes, self.followers, self.held) = outer::follow(self, &own, reached)?;
         Ok(())
     }
 }

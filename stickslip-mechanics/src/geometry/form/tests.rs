@@ -5,7 +5,7 @@ fn turned_box() -> Shape {
 }
 
 fn check<const D: usize>(shape: &Shape, cell: f64) -> Form<D> {
-    let form = Form::<D>::new(shape, cell).unwrap();
+    let form = Form::<D>::new(shape, cell, HeldFaces::default()).unwrap();
     let moments = shape.moments(D).unwrap();
     let volume: f64 = form.volumes.iter().sum();
     assert!((volume / moments.volume - 1.0).abs() < 1e-12, "{volume} for {}", moments.volume);
@@ -72,9 +72,9 @@ fn so_do_solids_in_space() {
 #[test]
 fn shapes_without_room_for_two_cells_have_no_grid() {
     let thin = Shape::rectangle([0.0, 0.0], [1.0, 0.15]);
-    assert_eq!(Form::<2>::new(&thin, 0.1).unwrap_err(), NoForm::Thin(0.15));
+    assert_eq!(Form::<2>::new(&thin, 0.1, HeldFaces::default()).unwrap_err(), NoForm::Thin(0.15));
     assert_eq!(
-        Form::<2>::new(&Shape::half_space([0.0; 3], [0.0, 1.0, 0.0]), 0.1).unwrap_err(),
+        Form::<2>::new(&Shape::half_space([0.0; 3], [0.0, 1.0, 0.0]), 0.1, HeldFaces::default()).unwrap_err(),
         NoForm::Unbounded
     );
 }

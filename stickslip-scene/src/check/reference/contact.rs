@@ -80,8 +80,8 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
             };
             let rule = names.rule(first.1, second.1);
             let found = match (first.0, second.0) {
-                (Side::Reference, Side::Reference | Side::Prescribed) => refused(scene, pair, rule),
-                (Side::Reference, other) => unlike(scene, pair, (rule, other)),
+                (Side::Reference, Side::Grid) => unlike(scene, pair, rule),
+                (Side::Reference, _) => refused(scene, pair, rule),
                 _ => memory(scene, pair, rule),
             };
             found.map_or(Ok(()), Err)?;
@@ -109,26 +109,20 @@ fn refused(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Pro
     })
 }
 
-/// A body with interior "reference" and one that it cannot meet, unless the law is that they do not.
-fn unlike(scene: &Scene, [a, b]: [usize; 2], (rule, other): (Option<usize>, Side)) -> Option<Problem> {
+/// A body with interior "reference" and one on the grid, unless the law is that they do not meet.
+fn unlike(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Problem> {
     if rule.is_some_and(|rule| scene.contact[rule].law == ContactLaw::None) {
         return None;
     }
     let [name, with] = [a, b].map(|body| &scene.bodies[body].name);
-    let (is, instead) = match other {
-        Side::FreeRigid => ("is rigid and free", format!("interior = \"grid\" for `{name}`")),
-        _ => (
-            "has interior = \"grid\"",
-            format!("interior = \"reference\" for `{with}` too, or \"grid\" for both"),
-        ),
-    };
+    let instead = format!("interior = \"reference\" for `{with}` too, or \"grid\" for both");
     let by = rule.map_or("as no rule names the pair".to_string(), |rule| format!("by contact[{rule}]"));
     Some(Problem {
         key: interior_key(scene, a),
-        found: format!("\"reference\" of `{name}`, which may touch `{with}`, {by}, and that {is}"),
-        allowed: format!(
-            "bodies with interior \"reference\" meet each other, and rigid bodies whose motion is prescribed: {instead}"
+        found: format!(
+            "\"reference\" of `{name}`, which may touch `{with}`, {by}, and that has interior = \"grid\""
         ),
+        allowed: format!("bodies with interior \"reference\" meet each other, and rigid bodies: {instead}"),
         help: Some("if the two never meet, a rule between them with law = \"none\" says so".to_string()),
     })
 }

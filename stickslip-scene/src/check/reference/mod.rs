@@ -14,6 +14,7 @@ use super::table::short;
 use crate::geometry::form::Form;
 use crate::geometry::{Curved, Shape};
 use crate::material::Material;
+use crate::rigid::{Carried, carried_bodies};
 use crate::scene::{
     Action, Body, FACES, Face, Interior, Leaving, NamedMaterial, Problem, Scene, VolumeChange,
 };
@@ -29,11 +30,12 @@ const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] = &[
     averaged_volume,
     initial_stress,
     walls,
+    joined,
 ];
 
 /// What a scene may not have in which there is one, by the number of the first.
 const OF_SCENE: &[fn(&Scene, usize) -> Option<Problem>] =
-    &[periodic_faces, removal, bulk_viscosity, relaxation, temperatures, springs, joints];
+    &[removal, bulk_viscosity, temperatures, springs, joints, light_bodies];
 
 /// Particles along each side of a cell.
 const PER_SIDE: f64 = 2.0;
@@ -47,7 +49,7 @@ const MARGIN: f64 = 2.0;
 /// Cells that its grid has at most.
 const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 
-/// What lies nearer to a face of the domain reaches it [cells].
+/// What reaches no further beyond a face of the domain ends on it [cells].
 const ROUND_OFF: f64 = 1e-9;
 
 /// # Errors
@@ -83,6 +85,10 @@ pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
     }
 }
 
+/// Cells in the box round a shape over which a grid is tried before the run, at most: larger ones are refused as they
+/// are built, if they are.
+const MOST_TRIED: f64 = 2e5;
+
 /// A shape over which no grid of its own fits: balls and boxes are judged by their sides.
 fn no_grid(scene: &Scene) -> Option<String> {
     let is_simple = |shape: &Shape| matches!(shape, Shape::Ball { .. } | Shape::Box { .. });
@@ -92,12 +98,14 @@ fn no_grid(scene: &Scene) -> Option<String> {
         if !is_reference(scene, body)
             || is_simple(shape)
             || matches!(shape, Shape::Curved(Curved::PointCloud(_)))
+            || cells_around(scene, body) > MOST_TRIED
         {
             return None;
         }
+        let faces = scene.held_faces(&scene.bodies[body]);
         let fails = match scene.dimension.axes() {
-            2 => Form::<2>::new(shape, cell).is_err(),
-            _ => Form::<3>::new(shape, cell).is_err(),
+            2 => Form::<2>::new(shape, cell, faces).is_err(),
+            _ => Form::<3>::new(shape, cell, faces).is_err(),
         };
         let name = &scene.bodies[body].name;
         fails.then(|| {
@@ -170,10 +178,15 @@ fn thickness(scene: &Scene, body: usize) -> Option<Problem> {
     is_thin.then(|| problem(scene, body, format!("bodies[{body}].shape"), &found, &allowed))
 }
 
-fn cells(scene: &Scene, body: usize) -> Option<Problem> {
+/// Cells in the box round a body and its margin; none of one without bounds.
+fn cells_around(scene: &Scene, body: usize) -> f64 {
     let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
-    let bounds = scene.bodies[body].shape.bounds(axes)?.grown(MARGIN * cell);
-    let cells: f64 = bounds.size()[..axes].iter().map(|side| (side / cell).ceil()).product();
+    let Some(bounds) = scene.bodies[body].shape.bounds(axes) else { return 0.0 };
+    bounds.grown(MARGIN * cell).size()[..axes].iter().map(|side| (side / cell).ceil()).product()
+}
+
+fn cells(scene: &Scene, body: usize) -> Option<Problem> {
+    let (cell, cells) = (scene.discretization.cell, cells_around(scene, body));
     let found = format!("{cells:.1e} cells of {} m in the box round a body", short(cell));
     let allowed = format!("at most {MOST_CELLS:.1e}");
     (cells > MOST_CELLS).then(|| problem(scene, body, "space.cell".to_string(), &found, &allowed))
@@ -219,17 +232,22 @@ fn walls(scene: &Scene, body: usize) -> Option<Problem> {
         (0..2).map(move |side| (domain.faces[k][side], FACES[k][side], beyond[side]))
     });
     let mut walls = sides.filter(|(face, ..)| matches!(face, Face::Symmetry | Face::Fixed));
-    let (_, name, _) = walls.find(|(.., beyond)| *beyond >= -near)?;
-    let found = format!("a body that reaches the face `{name}` of the domain");
-    let allowed = format!("room between the two, or {name} = \"open\"");
+    let (_, name, _) = walls.find(|(.., beyond)| *beyond > near)?;
+    let found = format!("a body that reaches beyond the face `{name}` of the domain");
+    let allowed = format!("a body that ends there, or {name} = \"open\"");
     Some(problem(scene, body, format!("bodies[{body}].shape"), &found, &allowed))
 }
 
-fn periodic_faces(scene: &Scene, body: usize) -> Option<Problem> {
-    let domain = scene.domain.as_ref()?;
-    let axis = (0..scene.dimension.axes()).find(|&k| domain.is_periodic(k))?;
-    let key = format!("space.domain.{}", FACES[axis][0]);
-    Some(problem(scene, body, key, "\"periodic\"", "other faces"))
+fn joined(scene: &Scene, body: usize) -> Option<Problem> {
+    let axis = scene.joined_ends(body).iter().position(Option::is_some)?;
+    let found = format!("a body that is joined to its own images along {}", ["x", "y", "z"][axis]);
+    Some(problem(
+        scene,
+        body,
+        format!("bodies[{body}].shape"),
+        &found,
+        "one that ends between the periodic faces",
+    ))
 }
 
 fn removal(scene: &Scene, body: usize) -> Option<Problem> {
@@ -244,12 +262,6 @@ fn bulk_viscosity(scene: &Scene, body: usize) -> Option<Problem> {
     Some(problem(scene, body, format!("damping.{key}"), &value.to_string(), "0, the default"))
 }
 
-fn relaxation(scene: &Scene, body: usize) -> Option<Problem> {
-    scene.time.relax?;
-    let allowed = "none; `viscous` of [damping] brings bodies to rest in a run";
-    Some(problem(scene, body, "time.relax".to_string(), "dynamic relaxation", allowed))
-}
-
 fn temperatures(scene: &Scene, _: usize) -> Option<Problem> {
     let mut warm = scene.loads.iter().zip(loads::keys(scene));
     let (load, key) = warm
@@ -262,11 +274,27 @@ fn springs(scene: &Scene, _: usize) -> Option<Problem> {
         let [from, to] = spring.ends.each_ref().map(|end| end.body);
         [("from", [from, to]), ("to", [to, from])].map(move |(key, bodies)| (i, key, bodies))
     });
-    let meets = |other: usize| is_reference(scene, other) || scene.bodies[other].is_prescribed();
+    let meets = |other: usize| is_reference(scene, other) || scene.bodies[other].is_rigid();
     let (i, key, [body, _]) = ends.find(|&(.., [body, other])| is_reference(scene, body) && !meets(other))?;
-    let allowed = "one to another such body, or to a rigid body whose motion is prescribed";
+    let allowed = "one to another such body, or to a rigid body";
     Some(problem(scene, body, format!("springs[{i}].{key}.body"), "a spring", allowed))
 }
+
+/// A free rigid body so light that the layer of contact would make steps far shorter than waves do.
+fn light_bodies(scene: &Scene, _: usize) -> Option<Problem> {
+    let light = carried_bodies(scene).into_iter().find(|carried| carried.ratio > MOST_RATIO)?;
+    let Carried { body, mass, partner, ratio, .. } = light;
+    let is_given = scene.bodies[body].as_free_rigid().is_some_and(|free| free.mass.is_some());
+    let key = format!("bodies[{body}].rigid.free{}", if is_given { ".mass" } else { "" });
+    let name = &scene.bodies[body].name;
+    let found = format!("{} kg of `{name}`, so light that contact would make steps very short", short(mass));
+    let allowed = format!("at least {} kg", short(mass * ratio / MOST_RATIO));
+    Some(problem(scene, partner, key, &found, &allowed))
+}
+
+/// The square of the fastest motion of a free rigid body on cells all around over that of waves in these, at most: with
+/// it, steps are about a tenth as long as without the body.
+const MOST_RATIO: f64 = 400.0;
 
 fn joints(scene: &Scene, _: usize) -> Option<Problem> {
     let mut ends = scene.joints.iter().enumerate().flat_map(|(i, joint)| {

@@ -73,7 +73,11 @@ pub enum OverlapUse {
 
 impl Choice for OverlapUse {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
-        ("kept", OverlapUse::Kept, "It stays, without stress; contact only keeps it from growing."),
+        (
+            "kept",
+            OverlapUse::Kept,
+            "Of bodies on the grid it stays, without stress: contact only keeps it from growing; those on grids of their own are pressed apart at once.",
+        ),
         (
             "press",
             OverlapUse::Press,
