@@ -43,7 +43,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         // Of several ranks one has the particles of a body on a grid of its own.
         let own = self.settings.references.iter().zip(&self.state.references.nodes);
         for (_, nodes) in own.filter(|(own, _)| !self.state.bodies[own.body].particles.is_empty()) {
-            for (mass, velocity) in nodes.masses.iter().zip(&nodes.velocities) {
+            for (mass, _, velocity) in nodes.carried() {
                 sums.iter_mut().zip(velocity.0).for_each(|(sum, v)| sum.add(mass * v));
             }
         }
