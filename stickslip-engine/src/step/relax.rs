@@ -89,8 +89,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
     }
 
-    /// Stops bodies on the common grid, and those beside them, where their kinetic energy has passed a peak after a step,
-    /// and says whether all are at rest.
+    /// Stops bodies on the common grid, and those beside them, where their kinetic energy has passed a peak after a
+    /// step, and says whether all are at rest.
     pub(super) fn relax(&mut self, dt: f64) {
         let Some(scene::Relaxation { residual }) = self.settings.time.relax else { return };
         let start = Instant::now();

@@ -88,8 +88,8 @@ impl<const D: usize> PeriodLengths<D> {
     }
 }
 
-/// Pairs of boxes of which one overlaps the other or an image of it, the first by its lower number: by a sweep along the
-/// first axis.
+/// Pairs of boxes of which one overlaps the other or an image of it, the first by its lower number: by a sweep along
+/// the first axis.
 pub(super) fn pairs<const D: usize>(
     boxes: &[[Vector<f64, D>; 2]],
     lengths: PeriodLengths<D>,

@@ -65,7 +65,8 @@ pub trait Rigid: Sync {
     fn velocity(&self, place: [f64; 3]) -> [f64; 3];
     /// A box that holds it [m].
     fn bounds(&self) -> [[f64; 3]; 2];
-    /// The same distance to that image of it between periodic faces which is nearest, and from the body to the image [m].
+    /// The same distance to that image of it between periodic faces which is nearest, and from the body to the image
+    /// [m].
     fn nearest(&self, place: [f64; 3]) -> (SignedDistance, [f64; 3]) {
         (self.level(place), [0.0; 3])
     }

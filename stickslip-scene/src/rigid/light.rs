@@ -66,8 +66,8 @@ pub fn carried_bodies(scene: &Scene) -> Vec<Carried> {
 }
 
 /// The longest step of free rigid bodies that bodies on grids of their own touch all around [s]: dt = 1/w with the
-/// stiffness of the layer, half of what is stable, so that it is stable together with that of the others. The first touch
-/// has it, too.
+/// stiffness of the layer, half of what is stable, so that it is stable together with that of the others. The first
+/// touch has it, too.
 pub(super) fn longest_carried(scene: &Scene) -> f64 {
     let rates = carried_bodies(scene).into_iter().map(|carried| carried.rate);
     1.0 / (STIFFNESS * rates.fold(0.0, f64::max)).sqrt()

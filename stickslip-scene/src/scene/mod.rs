@@ -312,8 +312,8 @@ pub struct Time {
     pub energy_drift: f64,
 }
 
-/// Dynamic relaxation: by critical damping of bodies on grids of their own (Underwood 1983), and where others deform, by
-/// velocities that are set to zero wherever the kinetic energy has passed a peak (Cundall 1982).
+/// Dynamic relaxation: by critical damping of bodies on grids of their own (Underwood 1983), and where others deform,
+/// by velocities that are set to zero wherever the kinetic energy has passed a peak (Cundall 1982).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Relaxation {
     /// The bodies are at rest once the sum of the unbalanced forces at the nodes is at most this part of the sum of the

@@ -15,9 +15,9 @@
 //!
 //! Sand by `cubic` and `rflip` at 10, 20 and 40 cells runs out by 1.10, 1.25 and 1.36, its centre of mass is at 0.709,
 //! 0.724 and 0.726 of the height, and the ledger lacks 12, 7 and 4 % of what friction took. By `apic` these runs go
-//! by 0.75, 0.94 and 1.16, with the centre at 0.66, 0.68 and 0.70: the transfer takes 30, 17 and 9 % as much as friction
-//! does. Cells, functions and transfers of these two tests were chosen with the answer known, and the run-out has not
-//! converged: they guard what is found, and validate nothing but the height and the rest.
+//! by 0.75, 0.94 and 1.16, with the centre at 0.66, 0.68 and 0.70: the transfer takes 30, 17 and 9 % as much as
+//! friction does. Cells, functions and transfers of these two tests were chosen with the answer known, and the run-out
+//! has not converged: they guard what is found, and validate nothing but the height and the rest.
 
 use crate::trial::{mean_where, run_to, start};
 use stickslip::door::{ContactCursor, ParticleSnapshot};

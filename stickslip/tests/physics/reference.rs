@@ -3,8 +3,7 @@
 //! Source: each claim says its own. Set-up: scenes whose bodies have interior = "reference". Expected: what continuum
 //! mechanics says, and what every body owes: momentum to round-off, energy, the same bits.
 
-use crate::trial::{RUBBER, norm, run_to, start, take_steps};
-use rayon::ThreadPoolBuilder;
+use crate::trial::{RUBBER, norm, run_to, same_bits, start, take_steps};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use stickslip::door::{Simulation, StepError, WallState};
 
@@ -159,8 +158,8 @@ fn closed_faces_are_walls() {
     }
 }
 
-/// A block is held by a mirror beside it and a fixed face below, and pulled aside: what both faces give it, and gravity,
-/// is what it gains of momentum and spin.
+/// A block is held by a mirror beside it and a fixed face below, and pulled aside: what both faces give it, and
+/// gravity, is what it gains of momentum and spin.
 #[test]
 fn faces_that_hold_a_body_give_what_it_gains() {
     let gravity = [0.3, -0.5].map(|g| g * WAVE * WAVE * 0.1);
@@ -244,33 +243,7 @@ fn a_clamped_beam_swings_on() {
 /// All bits are the same on one, two and five threads, after a state was saved, taken back, and with lists made anew.
 #[test]
 fn bits_do_not_depend_on_threads_or_resumes() {
-    for dimension in ["plane-strain", "3d"] {
-        let text = several(dimension);
-        let outcome = |threads: usize, restore: bool| {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-            pool.install(|| {
-                let mut simulation = start(&text);
-                for step in 0..60 {
-                    if restore && step % 20 == 7 {
-                        let saved = simulation.save().expect("it can be saved");
-                        take_steps(&mut *simulation, 3);
-                        simulation.restore(saved).expect("it is its own state");
-                        simulation.hold();
-                        take_steps(&mut *simulation, 2);
-                        assert!(simulation.take_back());
-                        simulation.rebuild_workspace();
-                    }
-                    take_steps(&mut *simulation, 1);
-                }
-                assert!(simulation.ledger().friction > 0.0, "they slide");
-                format!("{:?} {:?} {:?}", simulation.snapshot(), simulation.ledger(), simulation.bodies())
-            })
-        };
-        let one = outcome(1, false);
-        for (threads, restore) in [(2, false), (5, false), (1, true)] {
-            assert!(outcome(threads, restore) == one, "{dimension}: {threads} threads, resumed: {restore}");
-        }
-    }
+    ["plane-strain", "3d"].iter().for_each(|dimension| same_bits(&several(dimension), 60, [2, 5]));
 }
 
 /// Balls, or disks, that are thrown at each other and at a floor.

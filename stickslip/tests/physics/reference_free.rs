@@ -1,11 +1,10 @@
 //! Bodies on grids of their own and free rigid ones.
 //!
 //! Source: each claim says its own. Set-up: rubber with interior = "reference" (wave speed 36.7 m/s), and rigid bodies
-//! that forces move. Expected: momentum and spin to round-off, energy, weight, what a far stiffer body does that deforms,
-//! and the same bits.
+//! that forces move. Expected: momentum and spin to round-off, energy, weight, what a far stiffer body does that
+//! deforms, and the same bits.
 
-use crate::trial::{RUBBER, STRESS_UPDATES, run_to, start, take_steps};
-use rayon::ThreadPoolBuilder;
+use crate::trial::{RUBBER, STRESS_UPDATES, run_to, same_bits, start};
 use std::f64::consts::PI;
 use stickslip::door::{ContactCursor, Simulation};
 
@@ -250,31 +249,5 @@ pub fn several(dimension: &str) -> String {
 /// All bits are the same on one, three and five threads, after a state was saved, taken back, and with lists made anew.
 #[test]
 fn bits_do_not_depend_on_threads_or_resumes() {
-    for dimension in ["plane-strain", "3d"] {
-        let text = several(dimension);
-        let outcome = |threads: usize, restore: bool| {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-            pool.install(|| {
-                let mut simulation = start(&text);
-                for step in 0..60 {
-                    if restore && step % 20 == 7 {
-                        let saved = simulation.save().expect("it can be saved");
-                        take_steps(&mut *simulation, 3);
-                        simulation.restore(saved).expect("it is its own state");
-                        simulation.hold();
-                        take_steps(&mut *simulation, 2);
-                        assert!(simulation.take_back());
-                        simulation.rebuild_workspace();
-                    }
-                    take_steps(&mut *simulation, 1);
-                }
-                assert!(simulation.ledger().friction > 0.0, "they slide");
-                format!("{:?} {:?} {:?}", simulation.snapshot(), simulation.ledger(), simulation.bodies())
-            })
-        };
-        let one = outcome(1, false);
-        for (threads, restore) in [(3, false), (5, false), (1, true)] {
-            assert!(outcome(threads, restore) == one, "{dimension}: {threads} threads, resumed: {restore}");
-        }
-    }
+    ["plane-strain", "3d"].iter().for_each(|dimension| same_bits(&several(dimension), 60, [3, 5]));
 }

@@ -10,8 +10,7 @@
 //! | a packing pressed between endless plates | sum of f_y l_y over contacts = force of the plates times their distance, within 1 % |
 //! | disks across faces | the same bits by one, two and five threads, and after a resume |
 
-use crate::trial::{RUBBER, largest_difference, norm, run_to, start, take_steps};
-use rayon::ThreadPoolBuilder;
+use crate::trial::{RUBBER, largest_difference, norm, run_to, same_bits, start, take_steps};
 use stickslip::door::{ContactCursor, Simulation};
 
 const PERIOD: f64 = 4.8;
@@ -223,27 +222,6 @@ fn the_mean_stress_of_a_packing_is_that_of_its_plates() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_resumes() {
-    for (text, steps) in [(packing(), 300), (scene("3d", true, &three("3d", [2.4, -2.4, 2.4])), 60)] {
-        let outcome = |threads: usize, restore: bool| {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-            pool.install(|| {
-                let mut simulation = start(&text);
-                for step in 0..steps {
-                    if restore && step % 20 == 7 {
-                        let saved = simulation.save().expect("it can be saved");
-                        take_steps(&mut *simulation, 3);
-                        simulation.restore(saved).expect("it is its own state");
-                        simulation.rebuild_workspace();
-                    }
-                    take_steps(&mut *simulation, 1);
-                }
-                assert!(simulation.ledger().friction > 0.0, "they slide");
-                format!("{:?} {:?} {:?}", simulation.snapshot(), simulation.ledger(), simulation.bodies())
-            })
-        };
-        let one = outcome(1, false);
-        for (threads, restore) in [(2, false), (5, false), (1, true)] {
-            assert!(outcome(threads, restore) == one, "{threads} threads, resumed: {restore}");
-        }
-    }
+    same_bits(&packing(), 300, [2, 5]);
+    same_bits(&scene("3d", true, &three("3d", [2.4, -2.4, 2.4])), 60, [2, 5]);
 }

@@ -14,10 +14,10 @@
 //! more; bits are the same for any number of threads and after a resume on the way.
 
 use crate::ranks::compare;
-use crate::relaxation::{LENGTH, SAG, bar, lowest};
-use crate::trial::{run_to, start, take_steps};
+use crate::relaxation::{LENGTH, SAG, bar, lowest, stack, stack_comes_to_rest};
+use crate::trial::{start, take_steps};
 use rayon::ThreadPoolBuilder;
-use stickslip::door::{ContactCursor, Simulation};
+use stickslip::door::Simulation;
 
 /// The hanging bar on a grid of its own, at rest at a residual.
 fn hanging(residual: f64) -> String {
@@ -152,48 +152,9 @@ fn a_bar_that_is_twisted_comes_to_rest() {
     assert!((strain / exact - 1.0).abs() < 0.03, "{strain}");
 }
 
-/// A disk on a floor, and a block on the disk, with friction.
-fn stack() -> String {
-    r#"
-        gravity = [0, -9.81]
-        space = { dimension = "plane-strain", interior = "reference", cell = 0.01 }
-        time = { end = 5, relax = {} }
-        materials.gel = { density = 1000, neo_hookean = { young_modulus = 5e4, poisson_ratio = 0.3 } }
-        contact = [{ friction = 0.5 }]
-        [[bodies]]
-        name = "floor"
-        material = "gel"
-        shape.half_space = { point = [0, 0], normal = [0, 1] }
-        rigid = {}
-        [[bodies]]
-        name = "disk"
-        material = "gel"
-        shape.ball = { center = [0, 0.05], radius = 0.05 }
-        [[bodies]]
-        name = "block"
-        material = "gel"
-        shape.box = { min = [-0.05, 0.1], max = [0.05, 0.14] }
-    "#
-    .to_string()
-}
-
 #[test]
 fn a_stack_comes_to_rest_on_its_floor() {
-    let mut simulation = start(&stack());
-    let mut contacts = ContactCursor::default();
-    run_to(&mut *simulation, 5.0, |simulation| {
-        if simulation.relaxation().is_some_and(|state| !state.at_rest && state.residual > 2e-3) {
-            contacts.read(simulation);
-        }
-    });
-    let relaxation = simulation.relaxation().expect("asked for");
-    let weight = 9.81 * simulation.bodies().iter().skip(1).map(|body| body.mass).sum::<f64>();
-    let found = contacts.read(&*simulation);
-    let borne =
-        found.iter().find(|contact| contact.body_a == 0).expect("the floor bears").mean.force[1] / weight;
-    println!("{relaxation:?} after {} steps; floor bears {borne:.4} of the weight", simulation.steps());
-    assert!(relaxation.at_rest);
-    assert!((borne - 1.0).abs() < 0.01, "{borne}");
+    stack_comes_to_rest(&stack("reference"));
 }
 
 #[test]
@@ -214,7 +175,7 @@ fn bits_do_not_depend_on_threads_or_resumes() {
             format!("{:?} {:?} {relaxation:?}", simulation.snapshot(), simulation.ledger())
         })
     };
-    for text in [stack(), TORSION.to_string()] {
+    for text in [stack("reference"), TORSION.to_string()] {
         let one = outcome(&text, 1, false);
         for (threads, restore) in [(2, false), (1, true)] {
             assert!(outcome(&text, threads, restore) == one, "{threads} threads, resumed: {restore}");

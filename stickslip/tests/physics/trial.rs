@@ -1,5 +1,6 @@
 //! Scenes written in the tests, and how they are run.
 
+use rayon::ThreadPoolBuilder;
 use std::ops::ControlFlow;
 use stickslip::door::{ParticleSnapshot, Simulation};
 use stickslip::march::march;
@@ -72,4 +73,33 @@ pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// |a| of a vector.
 pub fn norm(a: [f64; 3]) -> f64 {
     distance(a, [0.0; 3])
+}
+
+/// Holds a scene in which bodies slide to the same bits after so many steps on one thread and on these numbers of them,
+/// and after its state was saved, restored and taken back, with lists made anew.
+pub fn same_bits(text: &str, steps: usize, threads: [usize; 2]) {
+    let outcome = |threads: usize, restore: bool| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        pool.install(|| {
+            let mut simulation = start(text);
+            for step in 0..steps {
+                if restore && step % 20 == 7 {
+                    let saved = simulation.save().expect("it can be saved");
+                    take_steps(&mut *simulation, 3);
+                    simulation.restore(saved).expect("it is its own state");
+                    simulation.hold();
+                    take_steps(&mut *simulation, 2);
+                    assert!(simulation.take_back());
+                    simulation.rebuild_workspace();
+                }
+                take_steps(&mut *simulation, 1);
+            }
+            assert!(simulation.ledger().friction > 0.0, "they slide");
+            format!("{:?} {:?} {:?}", simulation.snapshot(), simulation.ledger(), simulation.bodies())
+        })
+    };
+    let one = outcome(1, false);
+    for (threads, restore) in [(threads[0], false), (threads[1], false), (1, true)] {
+        assert!(outcome(threads, restore) == one, "{threads} threads, resumed: {restore}\n{text}");
+    }
 }

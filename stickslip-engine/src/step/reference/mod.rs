@@ -235,8 +235,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.settings.references.binary_search_by_key(&body, |reference| reference.body).ok()
     }
 
-    /// Finds where bodies on grids of their own touch, and gives their nodes the velocities that contact, loads and stress
-    /// give them. Free rigid bodies and springs feel what touches later in the step.
+    /// Finds where bodies on grids of their own touch, and gives their nodes the velocities that contact, loads and
+    /// stress give them. Free rigid bodies and springs feel what touches later in the step.
     ///
     /// # Errors
     /// A function from outside that has no answer.

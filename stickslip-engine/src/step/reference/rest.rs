@@ -19,8 +19,8 @@ use crate::tensor::Vector;
 use stickslip_reference::contact::Deforming;
 use stickslip_reference::interior::Interior;
 
-/// z: over critical damping. Linear models of cantilevers and hanging bars take a third fewer steps to a residual of 1e-4
-/// than with 1, and fewer than with 0.8.
+/// z: over critical damping. Linear models of cantilevers and hanging bars take a third fewer steps to a residual of
+/// 1e-4 than with 1, and fewer than with 0.8.
 const DAMPING_RATIO: f64 = 0.9;
 
 /// What nodes have before anything acts on them in a step, of each body.
@@ -75,8 +75,8 @@ impl<const D: usize> Begun<D> {
         }
     }
 
-    /// Books what is left of the forces on the nodes, and damps the velocities that they give. `accelerations` are those
-    /// of the step before, and become those of this one; to the sums goes what is of bodies that are `here`.
+    /// Books what is left of the forces on the nodes, and damps the velocities that they give. `accelerations` are
+    /// those of the step before, and become those of this one; to the sums goes what is of bodies that are `here`.
     pub fn slow_down(
         &self,
         (bodies, accelerations): (&mut [Deforming<'_, D>], &mut Vec<Vec<Vector<f64, D>>>),
@@ -157,8 +157,8 @@ fn gathered_forces<const D: usize>(nodes: &Interior<D>) -> Vec<Vector<f64, D>> {
 
 /// What a node of this mass adds to the sums of a step that it begins, and leaves without and with damping, with these
 /// velocities; the forces are the unbalanced one and that of the stress. What stiff supports hold is not unbalanced.
-/// Damping takes its impulse times the mean of the velocities that carry the node before and after, as other forces give
-/// theirs: so works and energies add up.
+/// Damping takes its impulse times the mean of the velocities that carry the node before and after, as other forces
+/// give theirs: so works and energies add up.
 fn totals<const D: usize>(
     mass: f64,
     [start, free, left]: [Vector<f64, D>; 3],

@@ -1,5 +1,5 @@
-//! Rigid bodies as those on grids of their own meet them. Of a step's start are their places; their velocities are those
-//! that they have by then.
+//! Rigid bodies as those on grids of their own meet them. Of a step's start are their places; their velocities are
+//! those that they have by then.
 
 use crate::body::Body;
 use crate::geometry::{Bounds, MirroredShape, SignedDistance};

@@ -1,5 +1,5 @@
-//! Springs between bodies on grids of their own, or such a body and a rigid one: those of `../springs.rs`, on nodes that
-//! persist.
+//! Springs between bodies on grids of their own, or such a body and a rigid one: those of `../springs.rs`, on nodes
+//! that persist.
 //!
 //! ```text
 //! g_I = +-e sum_s (a_s/a) N_I(X_s)        v_I += dt f g_I / M_I
@@ -24,8 +24,8 @@ pub fn center<const D: usize>(spring: &SpringPoints, side: usize, nodes: &Interi
 }
 
 impl<T: Laned, const D: usize> Engine<T, D> {
-    /// What a spring does in a step of `dt` [s], after all else that acts on the nodes. The bodies of its ends are those of
-    /// these places; `None` is rigid.
+    /// What a spring does in a step of `dt` [s], after all else that acts on the nodes. The bodies of its ends are
+    /// those of these places; `None` is rigid.
     pub(in super::super) fn pull_nodes(
         &mut self,
         number: usize,

@@ -151,7 +151,7 @@ pub struct Carried<const D: usize> {
     pub node: usize,
     /// Its volume [m^3, m^2].
     pub volume: f64,
-    /// How it is turned over, and d [m].
+    /// How it is turned over.
     pub turned: Turned,
     /// d [m].
     pub shift: Vector<f64, D>,
@@ -221,12 +221,13 @@ impl<const D: usize> Form<D> {
         held.images.iter().for_each(|image| nodes[image.master as usize].1 |= image.turned.faces);
         let some = nodes.into_iter().zip(0..).filter(|((axes, faces), _)| axes | faces != 0);
         held.nodes = some.map(|((axes, faces), node)| HeldNode { node, axes, faces }).collect();
-        held.net = self.node_volumes.iter().map(|&volume| Vector([volume; D])).collect();
+        let mut net: Vec<_> = self.node_volumes.iter().map(|&volume| Vector([volume; D])).collect();
         for image in &held.images {
             let ones = Vector([image.volume; D]);
-            held.net[image.master as usize] += image.turned.of(ones) - ones;
+            net[image.master as usize] += image.turned.of(ones) - ones;
         }
-        held.hold(&mut held.net.clone()).clone_into(&mut held.net);
+        held.hold(&mut net);
+        held.net = net;
         self.held = Some(held);
     }
 
@@ -246,12 +247,8 @@ impl<const D: usize> Form<D> {
     /// All that moves with nodes, of half a model that half alone.
     pub fn carried(&self) -> impl Iterator<Item = Carried<D>> {
         let images = self.held.iter().flat_map(|held| &held.images);
-        let mut own: Vec<f64> = Vec::new();
-        if self.held.is_some() {
-            own.clone_from(&self.node_volumes);
-            images.clone().for_each(|image| own[image.master as usize] -= image.volume);
-        }
-        let volume = move |node: usize, whole: f64| own.get(node).copied().unwrap_or(whole);
+        let own = self.held.as_ref().map(|held| held.own_volumes(&self.node_volumes));
+        let volume = move |node: usize, whole: f64| own.as_ref().map_or(whole, |own| own[node]);
         let (turned, shift) = (Turned::default(), Vector::ZERO);
         let nodes = self.node_volumes.iter().enumerate().filter(|(_, whole)| **whole > 0.0);
         nodes.map(move |(node, &whole)| Carried { node, volume: volume(node, whole), turned, shift }).chain(
@@ -280,7 +277,7 @@ impl<const D: usize> Form<D> {
     ) -> Vec<Reaction<D>> {
         let Some(held) = &self.held else { return Vec::new() };
         let mut direct = forces.to_vec();
-        let mut volumes = self.node_volumes.clone();
+        let volumes = held.own_volumes(&self.node_volumes);
         let mut entry = held.turned.iter();
         for (node, masters, shares) in self.followers.iter() {
             for ((&master, &share), turned) in masters.iter().zip(shares).zip(&mut entry) {
@@ -289,7 +286,6 @@ impl<const D: usize> Form<D> {
                 }
             }
         }
-        held.images.iter().for_each(|image| volumes[image.master as usize] -= image.volume);
         let of = |mass: f64, change: Vector<f64, D>, force: Vector<f64, D>| {
             change * mass - (force + gravity * mass) * dt
         };
@@ -313,12 +309,18 @@ impl<const D: usize> Form<D> {
 }
 
 impl<const D: usize> Held<D> {
-    fn hold<'a>(&self, values: &'a mut [Vector<f64, D>]) -> &'a [Vector<f64, D>] {
+    /// Volumes that move with nodes themselves, of those with their images [m^3, m^2].
+    fn own_volumes(&self, all: &[f64]) -> Vec<f64> {
+        let mut own = all.to_vec();
+        self.images.iter().for_each(|image| own[image.master as usize] -= image.volume);
+        own
+    }
+
+    fn hold(&self, values: &mut [Vector<f64, D>]) {
         for HeldNode { node, axes, .. } in &self.nodes {
             let value = &mut values[*node as usize];
             (0..D).filter(|k| axes >> k & 1 == 1).for_each(|k| value[k] = 0.0);
         }
-        values
     }
 
     /// a_s = sum e S a_m

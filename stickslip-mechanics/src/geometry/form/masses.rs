@@ -60,7 +60,8 @@ impl<const D: usize> Form<D> {
     }
 }
 
-/// ShapeMoments of the whole of which a shape is the half before mirrors; `None` where it has no end, or fixed faces hold it.
+/// Moments of the whole of which a shape is the half before mirrors; `None` where it has no end, or fixed faces hold
+/// it.
 fn whole(half: ShapeMoments, faces: &HeldFaces) -> Option<ShapeMoments> {
     let mut whole = half;
     for (axis, _, face) in faces.iter() {

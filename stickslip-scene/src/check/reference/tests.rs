@@ -275,8 +275,8 @@ fn such_bodies_meet_each_other_and_rigid_ones() {
     }
 }
 
-/// What is as heavy as the layer of cells that it may touch is heavy enough: 2 pi r h rho is some 300 kg. A millionth is
-/// not, unless it touches nobody.
+/// What is as heavy as the layer of cells that it may touch is heavy enough: 2 pi r h rho is some 300 kg. A millionth
+/// is not, unless it touches nobody.
 #[test]
 fn bodies_that_steps_would_wait_for_are_refused() {
     let light = |mass: &str| format!("{{ free.mass = {mass} }}");

@@ -41,8 +41,8 @@ table! {
 
 table! {
     /// Dynamic relaxation. Bodies with interior "reference" are damped critically for the slowest swing that they still
-    /// have (Underwood 1983). Where others deform, all velocities are set to zero wherever the kinetic energy has passed
-    /// a peak (Cundall 1982).
+    /// have (Underwood 1983). Where others deform, all velocities are set to zero wherever the kinetic energy has
+    /// passed a peak (Cundall 1982).
     RelaxTable {
         /// The run ends once the sum of the unbalanced forces at the nodes is at most this part of the sum of the
         /// internal or of the external forces there, whichever is larger; above 0 and below 1.
