@@ -1088,3 +1088,51 @@ fn local_damping_of_what_turns_is_told() {
     assert!(spins.contains("`body` moves on and on, and local damping slows it"), "{spins}");
     assert!(found(1.0, "shape.box = { min = [-0.5, -1], max = [0.5, -0.4] }").is_empty());
 }
+
+/// A body that moves as prescribed and begins at rest: its first step has no bound, and later ones have not shrunk.
+#[test]
+fn a_first_step_without_bound_is_no_measure() {
+    let (_, warnings, summary) = of_scene(
+        r#"
+        space = { dimension = "plane-strain", cell = 0.01 }
+        time.end = 3e-3
+        materials.rubber = { density = 1000, neo_hookean = { young_modulus = 1e6, poisson_ratio = 0.3 } }
+        [[bodies]]
+        name = "a"
+        material = "rubber"
+        shape.box = { min = [0, 0], max = [0.1, 0.1] }
+        rigid.velocity = ["1 m/s * sin(1000 * t)", 0]
+        "#,
+    );
+    assert!(warnings.is_empty(), "{warnings:?} {summary}");
+}
+
+/// A blow of 20 us on a free rigid body: the work of the load is what the body gains, within a step or over many.
+#[test]
+fn the_work_of_a_load_on_a_free_rigid_body_is_what_it_gains() {
+    for max_step in ["1 ms", "2 us"] {
+        let text = format!(
+            r#"
+            space = {{ dimension = "plane-strain", cell = 0.01 }}
+            time = {{ end = 3e-3, max_step = "{max_step}" }}
+            materials.stone = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
+            [[bodies]]
+            name = "a"
+            material = "stone"
+            shape.box = {{ min = [0, 0], max = [0.1, 0.1] }}
+            rigid.free = {{}}
+            [[loads]]
+            body = "a"
+            force = [{{ table = [[0, 0], ["10 us", 1e5], ["20 us", 0]] }}, 0]
+            "#
+        );
+        let scene = scene::parse("scene.toml", &text, &[]).expect("a scene").scene;
+        let mut simulation = stickslip::step::build(&scene).expect("no problem");
+        while simulation.time() < 3e-3 {
+            simulation.step(f64::INFINITY).expect("it is sound");
+        }
+        let ledger = simulation.ledger();
+        assert!((simulation.bodies()[0].velocity[0] - 0.1).abs() < 1e-12, "{:?}", simulation.bodies());
+        assert!((ledger.external_work / ledger.kinetic - 1.0).abs() < 1e-9, "{ledger:?}");
+    }
+}

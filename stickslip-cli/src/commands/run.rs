@@ -308,7 +308,9 @@ impl How {
         if let Some(pairs) = pairs_without_friction(scene) {
             self.note(&pairs);
         }
-        for warning in &report.warnings {
+        // What the run measures, its summary says.
+        let warnings: Vec<_> = report.warnings.into_iter().filter(|warning| !warning.is_estimate()).collect();
+        for warning in &warnings {
             tell!("warning: {warning}");
         }
         let mut simulation = ranks::simulation(loaded, &source)?;
@@ -316,7 +318,7 @@ impl How {
         let options = RunOptions {
             stop: stop_on_interrupt()?,
             threads,
-            scene_warnings: report.warnings,
+            scene_warnings: warnings,
             source: Some(SceneSource { text: Some(loaded.source.text().to_owned()), ..source }),
             checkpoints: Checkpointing { every, at_end, keep: usize::from(self.keep_checkpoints) },
             max_time: self.max_time.0.map(|longest| longest.saturating_sub(self.begun.elapsed())),

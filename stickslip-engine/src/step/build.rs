@@ -327,7 +327,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 loads,
                 joints: scene.joints.clone(),
                 springs: scene.springs.iter().map(|spring| SpringPoints::new(scene, spring)).collect(),
-                surfaces: RigidSurfaces::new(scene),
+                surfaces: RigidSurfaces::new::<D>(scene),
                 free: free_bodies(scene),
                 rigid,
                 references,

@@ -10,6 +10,7 @@
 //! stays stable and as long as it was. What M_i keeps from the node is the support's doing, and is booked as its force.
 
 use super::Engine;
+use crate::body::Body;
 use crate::boundary::{Boundary, reflect};
 use crate::door::StepError;
 use crate::exact::ExactSum;
@@ -331,7 +332,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 None => loaded.before = place_of(&particle, point),
                 Some(ahead) => particle.position += moves * ahead,
             }
-            loaded.begun = velocity;
+            loaded.begun = freely_moved(body, place_of(&particle, point)).unwrap_or(velocity);
             let outside = values.get(i).copied().unwrap_or_default();
             let carried = CarriedPoint { point, particle: &particle, velocity, outside };
             let time = LoadTime { time, now, dt: dt.f64(), means: means[number] };
@@ -409,8 +410,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                     }
                 }
                 let mean = (way + (*begun - held) * dt) * T::HALF;
+                let is_prescribed = body.motion.as_deref().is_some_and(|motion| motion.as_free().is_none());
                 for i in 0..D {
-                    let pushed = if body.is_rigid() { way[i] } else { mean[i] };
+                    let pushed = if is_prescribed { way[i] } else { mean[i] };
                     let closer = way[i] - felt.speed[i] * dt;
                     let springs = (felt.pull[i] + felt.spring[i] * closer * half) * way[i];
                     work.add((springs + (felt.force[i] - felt.pull[i]) * pushed).f64());
@@ -605,6 +607,12 @@ pub(super) fn find<const D: usize>(
 /// A vector's image across axes, a bit each.
 pub(super) fn mirror<T: Real, const D: usize>(v: Vector<T, D>, axes: u32) -> Vector<T, D> {
     (0..D).filter(|axis| axes >> axis & 1 == 1).fold(v, reflect)
+}
+
+/// Velocity of a free rigid body at a place [m/s].
+fn freely_moved<T: Real, const D: usize>(body: &Body<T, D>, place: Vector<T, D>) -> Option<Vector<T, D>> {
+    let motion = body.motion.as_deref().filter(|motion| motion.as_free().is_some())?;
+    Some(Vector::of(motion.velocity_at(place.space())))
 }
 
 /// Adds the places of a load's points that are there, times their measures, and the measures.

@@ -55,11 +55,12 @@ pub(super) fn distance_to_some(
             0.0
         };
         let off = [from[0] - along * edge[0], from[1] - along * edge[1]];
-        let length = off[0].hypot(off[1]);
-        if length < nearest {
-            (nearest, arm, along_edge) = (length, off, edge);
+        let square = off[0] * off[0] + off[1] * off[1];
+        if square < nearest {
+            (nearest, arm, along_edge) = (square, off, edge);
         }
     }
+    let nearest = nearest.sqrt();
     let sign = if contains(points, [x, y]) { -1.0 } else { 1.0 };
     let edge = along_edge[0].hypot(along_edge[1]);
     let gradient = if nearest > ON_BORDER * edge {

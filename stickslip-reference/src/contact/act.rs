@@ -1,8 +1,27 @@
 //! What points that touch do to the nodes: the pressure and the shear of the layer.
 
-use super::{Deforming, Friction, Memory, Met, Rigid, Touch};
+use super::{Deforming, Friction, LANDED, Memory, Met, Rigid, Touch};
 use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::Vector;
+
+/// Lets the layers of points that come to touch in a step of `dt` [s] feel no more of their depth than they come deeper in
+/// such a step, or these would store energy that nobody gave: where steps become shorter as bodies touch, a point slides
+/// in under an edge, or bodies overlap at the start.
+pub fn begin<const D: usize>(
+    bodies: &[Deforming<'_, D>],
+    rigids: &[&dyn Rigid],
+    touches: &mut [Touch<D>],
+    dt: f64,
+) {
+    for touch in touches.iter_mut().filter(|touch| touch.memory.age == 0.0) {
+        let approach = -touch.normal.dot(relative_velocity(bodies, rigids, touch));
+        let felt = (approach * dt).clamp(0.0, -touch.gap);
+        touch.memory.unfelt = -touch.gap - felt;
+        let [steps, patience] = LANDED;
+        touch.memory.patience = if -touch.gap <= steps * felt { patience } else { 1.0 };
+        touch.gap = -felt;
+    }
+}
 
 /// Adds the pressure and the friction of all points that touch to the forces on the nodes: f_I += N_I A (p n + tau), of
 /// the partner the opposite. What of the stored slip friction does not bear, slips, and takes work.
@@ -75,6 +94,9 @@ pub fn slip<const D: usize>(
         let mut memory = touch.memory;
         memory.stored = (Vector(memory.stored) + Vector((slip * dt).space())).0;
         memory.age += dt;
+        let deeper = memory.unfelt * (dt / (memory.patience * settling(bodies, touch))).min(1.0);
+        memory.unfelt -= deeper;
+        memory.felt = [(-touch.gap).max(0.0), deeper];
         // It goes on slipping only as long as its surfaces move that way.
         memory.speed = if memory.speed > 0.0 && slip.dot(touch.traction) < 0.0 { slip.norm() } else { 0.0 };
         if let Some(law) = rule(touch).memory {
@@ -87,6 +109,15 @@ pub fn slip<const D: usize>(
         memory
     };
     touches.iter_mut().map(after).collect()
+}
+
+/// How long a layer takes to feel the depth at which it began [s]: as long as the body that settles sooner.
+fn settling<const D: usize>(bodies: &[Deforming<'_, D>], touch: &Touch<D>) -> f64 {
+    let own = bodies[touch.side].settling;
+    match &touch.met {
+        Met::Deforming(b, _) => own.min(bodies[*b].settling),
+        Met::Rigid(_) => own,
+    }
 }
 
 /// Velocity of a body at a point that touches, against its partner's [m/s].

@@ -29,7 +29,12 @@ const BEYOND: f64 = 1.5;
 /// A normal that looks along another is not that of a partner's face.
 const FACING: f64 = -0.3;
 /// How far a point is moved back to find the face that it came through, in cells.
-const BACK: f64 = 0.3;
+pub(super) const BACK: f64 = 0.3;
+
+/// Whether a face with this outward normal looks at a partner whose surface has that one.
+pub(super) fn looks_at<const D: usize>(normal: Vector<f64, D>, toward: Vector<f64, D>) -> bool {
+    normal.dot(toward) < FACING
+}
 
 /// What a body is at a place, sought from an undeformed place near it; `toward` is the outward normal of the partner's
 /// surface there: near corners the face counts that looks at it. `None` where the place is far from the body, or no
@@ -69,7 +74,7 @@ pub fn look<const D: usize>(
     let gradient = Vector::of(level.gradient);
     let (length, normal) = outward(gradient);
     let seen = Seen { place, weights, distance: level.distance / length, normal: normal * (1.0 / length) };
-    let facing = |normal: Vector<f64, D>| toward.is_none_or(|toward| normal.dot(toward) < FACING);
+    let facing = |normal: Vector<f64, D>| toward.is_none_or(|toward| looks_at(normal, toward));
     if length > 0.0 && facing(seen.normal) {
         return Some(seen);
     }

@@ -25,7 +25,7 @@ mod near;
 #[cfg(test)]
 mod tests;
 
-pub use act::{press, slip};
+pub use act::{begin, press, slip};
 pub use friction::Friction;
 pub use images::PeriodLengths;
 pub use look::{Seen, look};
@@ -41,6 +41,10 @@ use stickslip_mechanics::tensor::Vector;
 /// Stiffness of the layer over that of a cell of both bodies.
 pub const STIFFNESS: f64 = 4.0;
 
+/// Of a point that came as deep as its speed took it in one or two of the steps of bodies that touch nobody, in steps of
+/// those that do: as these gain what the layer comes to feel while it is pressed, it takes so much longer.
+const LANDED: [f64; 2] = [5.0, 10.0];
+
 /// A body that deforms, as contact sees it.
 pub struct Deforming<'a, const D: usize> {
     /// Its number among all bodies.
@@ -53,6 +57,8 @@ pub struct Deforming<'a, const D: usize> {
     pub surface: &'a [SurfacePoint<D>],
     /// Moduli of its longitudinal and its shear wave at rest [Pa].
     pub moduli: [f64; 2],
+    /// How long its layers take to feel the depth at which its points came to touch [s].
+    pub settling: f64,
 }
 
 /// A rigid body, as contact sees it.
@@ -99,6 +105,12 @@ pub struct Memory {
     pub speed: f64,
     /// How long it has touched [s].
     pub age: f64,
+    /// Of the depth at which it came to touch, what its layer does not feel yet [m].
+    pub unfelt: f64,
+    /// How long the layer takes to feel it, over how long its bodies settle.
+    pub patience: f64,
+    /// The depth that the layer felt in the step before, and how much more of the first depth it then came to feel [m].
+    pub felt: [f64; 2],
 }
 
 impl Memory {
@@ -123,7 +135,7 @@ pub struct Touch<const D: usize> {
     pub at: Vector<f64, D>,
     /// Normal, out of the partner.
     pub normal: Vector<f64, D>,
-    /// Gap, negative [m].
+    /// Gap that the layer feels, negative where it presses [m].
     pub gap: f64,
     /// Undeformed area times the share of this side [m^2], in the plane length [m].
     pub area: f64,
@@ -133,6 +145,8 @@ pub struct Touch<const D: usize> {
     pub traction: Vector<f64, D>,
     /// Work that friction took in the step [J].
     pub friction: f64,
+    /// Work by which the layer came to feel more of the depth since the step before [J].
+    pub deepening: f64,
     /// Velocity along the surface, against the partner's, that moves the bodies in the step [m/s].
     pub slip: Vector<f64, D>,
 }
@@ -172,5 +186,10 @@ impl<const D: usize> Touch<D> {
     pub fn energy(&self) -> f64 {
         let pressure = self.pressure();
         0.5 * self.area * pressure * pressure / self.stiffness[0] + self.memory.energy
+    }
+
+    /// Force that the layer has yet to feel [N].
+    pub fn unfelt_force(&self) -> f64 {
+        self.area * self.stiffness[0] * self.memory.unfelt
     }
 }

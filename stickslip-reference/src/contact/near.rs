@@ -1,6 +1,7 @@
 //! Which points of surfaces touch which partners.
 
 use super::images::{PeriodLengths, pairs};
+use super::look::{BACK, looks_at};
 use super::{Deforming, Memory, Met, Rigid, STIFFNESS, Touch, look};
 use rayon::prelude::*;
 use stickslip_mechanics::geometry::form::digits;
@@ -18,11 +19,13 @@ pub enum Partner {
 
 /// By how much a body may bulge beyond the points of its surface, and move, in cells.
 const MARGIN: f64 = 0.75;
-/// How near points of two surfaces are that may come to touch each other, in cells.
+/// How near points of two surfaces are where one comes to touch the other, in cells of the coarser.
 const NEAR: f64 = 1.0;
 /// How far a body may move before its neighbours are sought anew, in cells: points of two surfaces lie half as far apart
 /// as neighbours do.
 const SKIN: f64 = 0.25;
+/// How near points of two surfaces are where they are neighbours, in cells: after both have moved as well.
+const LISTED: f64 = NEAR + 2.0 * SKIN;
 /// How far the nearest point of a surface may be from a place just inside, undeformed, in cells.
 const AROUND: f64 = 2.0;
 /// What of a gap is certain: gaps are measured along one direction, and some distances are bounds.
@@ -146,7 +149,7 @@ impl<const D: usize> Neighbours<D> {
             near.sort_unstable();
         }
         let seen = Seen { bodies, places: &places, boxes: &boxes, near: &near, lengths };
-        let pairs = seen.close_points().into_par_iter().map(|close| seen.pair(close)).collect();
+        let pairs = seen.close_points().into_par_iter().filter_map(|close| seen.pair(close)).collect();
         let beside: Vec<(usize, usize, f64)> = (0..bodies.len())
             .flat_map(|a| (0..rigids.len()).map(move |r| (a, r, 0.0)))
             .filter(|&(a, r, _)| {
@@ -244,8 +247,8 @@ struct Seen<'a, 'b, const D: usize> {
 }
 
 impl<const D: usize> Seen<'_, '_, D> {
-    /// A pair of neighbours with what is known of its gap.
-    fn pair(&self, close: Close) -> Pair<D> {
+    /// A pair of neighbours with what is known of its gap, if that may close before neighbours are sought anew.
+    fn pair(&self, close: Close) -> Option<Pair<D>> {
         let Close { body, point, partner, nearest } = close;
         let (a, other) = (&self.bodies[body as usize], &self.bodies[partner as usize]);
         let at = self.places[body as usize][point as usize];
@@ -256,12 +259,13 @@ impl<const D: usize> Seen<'_, '_, D> {
             Some(seen) if seen.distance > 0.0 => (CERTAIN * seen.distance, seen.place),
             _ => (f64::NEG_INFINITY, start),
         };
-        Pair { body, point, partner, gap, place }
+        let far = SKIN * (a.interior.form.cell + other.interior.form.cell);
+        (gap <= far).then_some(Pair { body, point, partner, gap, place })
     }
 
     /// Points that lie near a point of a partner's surface, ordered.
     fn close_points(&self) -> Vec<Close> {
-        let width = NEAR * self.bodies.iter().map(|body| body.interior.form.cell).fold(0.0, f64::max);
+        let width = LISTED * self.bodies.iter().map(|body| body.interior.form.cell).fold(0.0, f64::max);
         let entries_of = |a: usize| {
             let reach = Vector([width; D]);
             let around: Vec<_> =
@@ -413,6 +417,9 @@ impl<const D: usize> Point<'_, '_, D> {
             energy: 0.0,
             speed: 0.0,
             age: 0.0,
+            unfelt: 0.0,
+            patience: 1.0,
+            felt: [0.0; 2],
         }
     }
 
@@ -423,6 +430,11 @@ impl<const D: usize> Point<'_, '_, D> {
         (normal, gap): (Vector<f64, D>, f64),
         (share, stiffness): (f64, [f64; 2]),
     ) -> Touch<D> {
+        let gap = gap + memory.unfelt;
+        let area = share * self.bodies[self.a].surface[self.number].area;
+        // The layer's forces at both ends of the step give what bodies take of its energy, and this is the rest.
+        let [before, deeper] = memory.felt;
+        let deepening = 0.5 * area * stiffness[0] * (before + (-gap).max(0.0)) * deeper;
         Touch {
             memory,
             side: self.a,
@@ -431,10 +443,11 @@ impl<const D: usize> Point<'_, '_, D> {
             at: self.at,
             normal,
             gap,
-            area: share * self.bodies[self.a].surface[self.number].area,
+            area,
             stiffness,
             traction: Vector::ZERO,
             friction: 0.0,
+            deepening,
             slip: Vector::ZERO,
         }
     }
@@ -443,19 +456,30 @@ impl<const D: usize> Point<'_, '_, D> {
     /// point of the neighbour's surface, whatever was known before.
     fn come_to(&self, b: usize, about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
-        let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
-        let touch = self.in_body(b, memory(about))?;
-        let found = Vector::<f64, D>::of(touch.memory.place);
+        let toward = Some(normal(body, self.number));
+        let away = self.away(partner, about);
+        // There is one such place at most: it does not hang on where the search begins, but may not be found.
+        let found = look((&*partner.interior, partner.shape), self.at - away, about, toward);
+        if found.as_ref().is_some_and(|found| found.distance >= 0.0) {
+            return None;
+        }
         let reach = AROUND * partner.interior.form.cell;
-        let is_near = |point: &u32| (partner.surface[*point as usize].place - found).norm() < reach;
-        let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
-        let away = |point: u32| {
-            let away = place(partner, point as usize) + touch.away - self.at;
-            (away.dot(away), point)
+        let is_near = |point: &u32| {
+            let place = partner.surface[*point as usize].place;
+            found.as_ref().is_none_or(|found| (place - found.place).norm() < reach)
         };
-        let all = (0..partner.surface.len() as u32).filter(is_near).filter(is_apart).map(away);
-        let (_, nearest) = all.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)))?;
-        self.in_body(b, memory(partner.surface[nearest as usize].place))
+        let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
+        let square = |point: u32| {
+            let place = place(partner, point as usize);
+            let off = place + self.lengths.away(place, self.at) - self.at;
+            (off.dot(off), point)
+        };
+        let all = (0..partner.surface.len() as u32).filter(is_near).filter(is_apart).map(square);
+        let nearest = all.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+        let near = NEAR * body.interior.form.cell.max(partner.interior.form.cell);
+        let (_, nearest) = nearest.filter(|(square, _)| *square < near * near)?;
+        let place = partner.surface[nearest as usize].place;
+        self.in_body(b, Memory { place: place.space(), ..self.fresh(partner.body) })
     }
 
     /// Where it lies in a partner, sought from where it did before; of itself what lies far from a place of its own.
@@ -493,8 +517,24 @@ impl<const D: usize> Point<'_, '_, D> {
             return None;
         }
         let body = &self.bodies[self.a];
-        let layer = (1.0, body.moduli.map(|modulus| STIFFNESS * modulus / body.interior.form.cell));
-        Some(self.touch((memory, Met::Rigid(r), away), (Vector::of(level.gradient), level.distance), layer))
+        let cell = body.interior.form.cell;
+        let face = self.face_in(rigid, (Vector::of(level.gradient), level.distance), cell);
+        let layer = (1.0, body.moduli.map(|modulus| STIFFNESS * modulus / cell));
+        Some(self.touch((memory, Met::Rigid(r), away), face, layer))
+    }
+
+    /// Outward normal and distance of the face of a rigid body that a point came through: near an edge it need not be
+    /// the nearest. The nearest counts where no face looks at the point, as on a sharp wedge.
+    fn face_in(&self, rigid: &dyn Rigid, face: (Vector<f64, D>, f64), cell: f64) -> (Vector<f64, D>, f64) {
+        let toward = normal(&self.bodies[self.a], self.number);
+        if looks_at(face.0, toward) {
+            return face;
+        }
+        let back = toward * (-BACK * cell);
+        let (before, _) = nearest(rigid, self.at + back);
+        let through = Vector::of(before.gradient);
+        let distance = before.distance - through.dot(back);
+        if looks_at(through, toward) && distance < 0.0 { (through, distance) } else { face }
     }
 }
 

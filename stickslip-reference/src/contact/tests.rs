@@ -83,12 +83,14 @@ impl<const D: usize> Meeting<D> {
                 shape,
                 surface,
                 moduli,
+                settling: f64::INFINITY,
             })
             .collect();
         let rule = |_: &Touch<D>| friction;
         let all = (&bodies[..], &grounds[..]);
         let mut touches = find(all, &self.known, &|_, _| true, &mut self.neighbours, self.lengths);
         self.rubbed += parted(&self.known, &touches).map(|memory| memory.energy).sum::<f64>();
+        begin(&bodies, &grounds, &mut touches, dt);
         press(&mut bodies, &mut touches, &rule);
         bodies.iter_mut().for_each(|body| body.interior.accelerate(dt, gravity, &[]));
         self.known = slip(&bodies, &grounds, (&mut touches, dt), &rule);
@@ -157,6 +159,9 @@ fn neighbours_of_before_find_what_those_of_now_find() {
         ..disks().with(disk(0.4, 2.0), 0.125, |_| Vector([0.5 * speed, speed]))
     };
     compare(periodic, 10.0 / p_wave());
+    // Points that lie deep in another body come out of it.
+    let deep = || disks().with(disk(0.3, 0.9), 0.1, |_| Vector([0.0, speed]));
+    compare(deep, 10.0 / p_wave());
     let arch = Shape::rectangle([0.0, -1.0], [3.0, 1.0]).without(Shape::rectangle([0.8, -0.3], [4.0, 0.3]));
     let close = move |x: Vector<f64, 2>| Vector([0.0, -4.0 * speed * x[1].signum() * (x[0] / 3.0).powi(2)]);
     compare(|| Meeting::<2>::new().with(arch.clone(), 0.15, close), 15.0 / p_wave());

@@ -139,8 +139,8 @@ fn kept_overlap(scene: &Scene, overlap: &Overlap, others: usize) -> Warning {
     let becomes = match (rigid, on_own_grid) {
         (true, _) => "they part slowly, as their weight would let them fall by as much",
         (false, true) => {
-            "contact presses them apart from the first step on, with energy from nowhere; by time.relax that is an \
-             interference fit"
+            "contact presses them apart within some transits of a wave, as an interference fit, and what does not hold \
+             them flies apart"
         }
         (false, false) => {
             "contact keeps them from going deeper and does not press them apart: the overlap stays, without stress; \

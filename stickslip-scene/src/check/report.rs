@@ -7,7 +7,7 @@ use super::memory::Footprint;
 use super::neighbours::pairs_within;
 use super::rules::RuleReport;
 use super::table::short;
-use super::warning::{Warning, and_more, few};
+use super::warning::{NOT_RESOLVED, Warning, and_more, few};
 use super::{
     dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules,
     soil, thickness,
@@ -358,7 +358,7 @@ fn narrow_contacts(contacts: &[ContactEstimate]) -> Option<Warning> {
     let told = contacts[..narrow].get(narrow.saturating_sub(1) / 2)?;
     let which = if narrow > 2 { "half of them are narrower than that in which" } else { "in the narrowest" };
     let text = format!(
-        "not resolved: {narrow} of {} contacts; {which} {}; it needs cells of {} m to be marginal, {} m to be resolved",
+        "{NOT_RESOLVED}{narrow} of {} contacts; {which} {}; it needs cells of {} m to be marginal, {} m to be resolved",
         contacts.len(),
         told.off,
         short(told.patch.radius),

@@ -136,6 +136,8 @@ struct BodyCount {
     /// Rigid ones that forces move, and those that move as prescribed.
     free: usize,
     prescribed: usize,
+    /// Those that deform on grids of their own.
+    reference: usize,
 }
 
 impl BodyCount {
@@ -163,6 +165,7 @@ impl<'a> CountedRules<'a> {
                 body if body.is_rigid() => &mut count.free,
                 _ => &mut count.deforming,
             }) += 1;
+            count.reference += usize::from(scene.interior(i) == Interior::Reference);
         }
         CountedRules { scene, names, counts }
     }
@@ -178,8 +181,12 @@ impl<'a> CountedRules<'a> {
     /// Why a rule's restitution does not act, if it does not.
     fn dead_restitution(&self, rule: usize) -> Option<String> {
         let [first, second] = self.names.sides(rule);
-        let meet = |a: BodyCount, b: BodyCount| a.free * (b.free + b.prescribed) + a.prescribed * b.free > 0;
-        let acts = first.clone().any(|a| second.clone().any(|b| meet(self.counts[a], self.counts[b])));
+        let meet = |a: usize, b: usize| {
+            let [p, q] = [a, b].map(|class| self.counts[class]);
+            let others = q.free + q.prescribed - usize::from(a == b && p.free > 0);
+            p.free * others + p.prescribed * q.free > 0
+        };
+        let acts = first.clone().any(|a| second.clone().any(|b| meet(a, b)));
         (self.scene.contact[rule].restitution > 0.0 && !acts).then(|| {
             "does not act: it is that of rigid bodies of which one is free, and the rule names none; bodies that deform \
              bounce as their material does"
@@ -195,7 +202,8 @@ impl<'a> CountedRules<'a> {
             for b in second.clone() {
                 let [p, q] = [a, b].map(|class| self.counts[class]);
                 let rigid = p.all() + q.all() == p.prescribed + q.prescribed;
-                if a == b && p.all() < 2 {
+                // Parts of one body touch where it has a grid of its own.
+                if a == b && p.all() < 2 && p.reference == 0 {
                     continue;
                 }
                 match self.names.rule(a, b) {
@@ -234,7 +242,8 @@ impl<'a> CountedRules<'a> {
             names.filter_map(|(name, mut classes)| name.as_ref().filter(|_| classes.next().is_none()));
         let without: BTreeSet<_> = without.map(|name| format!("no body is of `{name}`")).collect();
         let why = match without.len() {
-            0 => "it names one body twice, and a body is in no contact with itself".to_string(),
+            0 => "it names one body twice, and a body on the common grid is in no contact with itself"
+                .to_string(),
             _ => without.into_iter().collect::<Vec<_>>().join(", "),
         };
         Some(format!("never holds: [{}] matches no pair of bodies: {why}", pair(rule)))

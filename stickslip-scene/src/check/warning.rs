@@ -15,7 +15,15 @@ pub struct Warning {
     pub text: String,
 }
 
+/// How the warning of contacts begins that may be too narrow for the cells.
+pub(super) const NOT_RESOLVED: &str = "not resolved: ";
+
 impl Warning {
+    /// Whether it estimates what a run measures, which says at its end what it was.
+    pub fn is_estimate(&self) -> bool {
+        self.text.starts_with(NOT_RESOLVED)
+    }
+
     /// A warning about a key.
     pub fn about(key: impl Into<String>, text: impl Into<String>) -> Self {
         Warning { key: key.into(), place: None, text: text.into() }

@@ -1,7 +1,6 @@
 //! Which faces of the domain hold a body on a grid of its own.
 
 use super::{Body, Face, Scene};
-use crate::geometry::Bounds;
 use crate::geometry::form::{HeldFace, HeldFaces};
 
 /// How near to a face a body ends that lies on it [cells].
@@ -21,8 +20,9 @@ impl Scene {
             let ends = [(domain.min[axis], bounds.min[axis]), (domain.max[axis], bounds.max[axis])];
             for (side, (at, end)) in ends.into_iter().enumerate() {
                 let face = domain.faces[axis][side];
-                let is_near = (at - end).abs() <= ON * cell.max(at.abs());
-                if matches!(face, Face::Symmetry | Face::Fixed) && is_near {
+                // The box around a combined shape may be larger than the shape.
+                let inside = if side == 0 { end - at } else { at - end };
+                if matches!(face, Face::Symmetry | Face::Fixed) && inside <= ON * cell.max(at.abs()) {
                     held.0[axis][side] = Some(HeldFace { at, is_fixed: face == Face::Fixed });
                 }
             }
@@ -32,7 +32,7 @@ impl Scene {
         }
         let largest = bounds.size()[..axes].iter().fold(0.0_f64, |most, side| most.max(*side));
         let spacing = (0.5 * cell).max(largest / POINTS);
-        let surface = body.shape.surface(spacing, axes, &Bounds::EVERYTHING);
+        let surface = body.shape.surface(spacing, axes, &bounds.grown(spacing));
         for (axis, side, face) in HeldFaces(held.0).iter() {
             let mut alone = HeldFaces::default();
             alone.0[axis][side] = Some(face);
@@ -41,5 +41,34 @@ impl Scene {
             }
         }
         held
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+
+    /// The half of a disk, however it is cut.
+    #[test]
+    fn a_mirror_holds_a_half_however_it_is_cut() {
+        let ball = "{ ball = { center = [0, 0], radius = 0.1 } }";
+        let cuts = [
+            format!("intersection = [{ball}, {{ box = {{ min = [0, -1], max = [1, 1] }} }}]"),
+            format!("intersection = [{ball}, {{ half_space = {{ point = [0, 0], normal = [-1, 0] }} }}]"),
+            format!("difference = [{ball}, {{ half_space = {{ point = [0, 0], normal = [1, 0] }} }}]"),
+            "ball = { center = [0, 0], radius = 0.1 }\nbeyond_mirrors = \"cut\"".to_string(),
+        ];
+        for cut in cuts {
+            let text = format!(
+                "[space]\ndimension = \"plane-strain\"\ncell = 0.02\ninterior = \"reference\"\n\
+                 domain = {{ min = [0, -1], max = [1, 1], x_min = \"symmetry\", x_max = \"fixed\" }}\n[time]\nend = 1\n\
+                 [materials.m]\ndensity = 1000\nneo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }}\n\
+                 [[bodies]]\nname = \"half\"\nmaterial = \"m\"\nshape.{cut}\n"
+            );
+            let scene = parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+            let held = scene.held_faces(&scene.bodies[0]);
+            let faces: Vec<_> = held.iter().map(|(axis, side, _)| (axis, side)).collect();
+            assert_eq!(faces, [(0, 0)], "{cut}");
+        }
     }
 }

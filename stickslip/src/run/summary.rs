@@ -174,7 +174,7 @@ impl Display for Summary {
         if self.end.unsettled_nodes > 0 {
             writeln!(
                 f,
-                "  contact    {} times bodies at a node had not come to rest on each other when the last sweep over them was done",
+                "  contact    {} times impulses were not found to the last digit asked for; the next step went on from them",
                 self.end.unsettled_nodes
             )?;
         }

@@ -5,7 +5,7 @@
 
 use crate::trial::{RUBBER, norm, run_to, same_bits, start, take_steps};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
-use stickslip::door::{Simulation, StepError, WallState};
+use stickslip::door::{ContactCursor, Simulation, StepError, WallState};
 
 /// A scene in the plane, of rubber (wave speed 36.7 m/s), with cells of this side.
 fn scene(cell: f64, rest: &str) -> String {
@@ -389,4 +389,51 @@ fn a_dragged_block_rubs_by_its_coefficient() {
     let pull = (last[0] - first[0]).abs() / (simulation.time() - 0.62) / (0.5 * 1000.0 * 0.02 * 9.81);
     println!("{pull}");
     assert!((pull - 1.0).abs() < 0.02, "{pull}");
+}
+
+/// A block lands flat on a rigid floor, straight and with friction. Its whole face touches in one step, and steps become
+/// shorter as it does: a layer that felt all of that depth at once gave it up to 35 % of its energy.
+#[test]
+fn flat_landings_keep_the_energy() {
+    for (cell, velocity) in [(0.01, [0.5, -0.3]), (0.01, [0.0, -0.3]), (0.005, [0.5, -0.3])] {
+        let [u, v] = velocity;
+        let rest = format!(
+            "[[bodies]]\nname = 'block'\nmaterial = 'rubber'\nvelocity = [{u}, {v}]\n\
+             shape.box = {{ min = [0, 0.002], max = [0.06, 0.06] }}\n\
+             [[bodies]]\nname = 'floor'\nmaterial = 'rubber'\nrigid = {{}}\n\
+             shape.half_space = {{ point = [0, 0], normal = [0, 1] }}\n[[contact]]\nfriction = 0.3\n"
+        );
+        let mut simulation = start(&scene(cell, &rest));
+        let before = energy(&*simulation);
+        run_to(&mut *simulation, 0.02, |_| ());
+        let left = (energy(&*simulation) + simulation.ledger().friction) / before;
+        println!("cells of {cell} m, {velocity:?} m/s: energy {left}");
+        assert!(simulation.bodies()[0].velocity[1] > 0.1, "{:?}", simulation.bodies());
+        assert!((left - 1.0).abs() < 0.04, "{left}");
+    }
+}
+
+/// A block is drawn along under a frictionless rigid plate that is shorter than it: nothing holds it back, also not where
+/// its points come in and out under the plate's ends. These were pushed out by the plate's ends, with 4 % of the normal
+/// force, at any cell.
+#[test]
+fn the_ends_of_a_rigid_plate_do_not_hook() {
+    for cell in [1e-3, 0.5e-3] {
+        let rest = "[damping]\nviscous = 1000\n\
+             [[bodies]]\nname = 'block'\nmaterial = 'rubber'\nshape.box = { min = [0, 0], max = [20e-3, 10e-3] }\n\
+             [[bodies]]\nname = 'plate'\nmaterial = 'rubber'\nrigid.displacement = [0, '-0.1 mm * min(t / 5 ms, 1)']\n\
+             shape.box = { min = [5e-3, 10e-3], max = [15e-3, 13e-3] }\n\
+             [[supports]]\nbody = 'block'\non = 'y_min'\ndisplacement = ['0.1 m/s * max(t - 5 ms, 0 s)', 0]\n\
+             [[contact]]\nfriction = 0\n";
+        let mut simulation = start(&scene(cell, rest));
+        run_to(&mut *simulation, 8e-3, |_| ());
+        let mut cursor = ContactCursor::default();
+        cursor.read(&*simulation);
+        run_to(&mut *simulation, 16e-3, |_| ());
+        let force = cursor.read(&*simulation)[0].mean.force;
+        println!("cells of {cell} m: {force:?} N/m");
+        assert!(force[1].abs() > 50.0 && force[0].abs() < 1e-3 * force[1].abs(), "{force:?}");
+        let ledger = simulation.ledger();
+        assert!((ledger.total / ledger.external_work).abs() < 0.06, "{ledger:?}");
+    }
 }

@@ -84,7 +84,9 @@ fn bodies_that_meet_off_centre_keep_momentum_spin_and_energy() {
             assert!(off < 1e-12, "{dimension}, {update}, free {free}: {off:e}");
             assert!((left - 1.0).abs() < 0.01, "{dimension}, {update}, free {free}: {left}");
             assert!((given - 1.0).abs() < 1e-9, "{dimension}, {update}, free {free}: {given}");
-            assert_eq!(simulation.ledger().external_work, 0.0);
+            // What layers come to feel of the depth at which points came to touch.
+            let work = simulation.ledger().external_work;
+            assert!((0.0..1e-3 * before).contains(&work), "{work} of {before}");
         }
     }
 }

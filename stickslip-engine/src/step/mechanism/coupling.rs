@@ -3,7 +3,7 @@
 use super::joint::poses;
 use super::row::{JointRow, Row};
 use super::six::{self, Six, SixFactor, SixMatrix, at, join};
-use super::surfaces::RigidSurfaces;
+use super::surfaces::{RigidContact, RigidSurfaces};
 use super::sweeps::{packed, solve, tolerance as tolerance_of};
 use super::touch::{Touch, TouchForce, least_slip};
 use super::{FreeBody, Mechanism, slot};
@@ -105,10 +105,11 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         }
         let touched = self.touched(bodies, &mechanism.bodies);
         self.find_rows(mechanism, dt);
-        let mut settled = false;
+        let (mut settled, mut found) = (false, None);
         for _ in 0..MAX_SEARCHES {
             let sought: Vec<f64> = mechanism.bodies.iter().map(|free| free.speed(bodies)).collect();
-            self.find_touches(bodies, mechanism, dt);
+            let contacts = found.take().unwrap_or_else(|| self.contacts(bodies, dt));
+            self.find_touches(contacts, bodies, mechanism, dt);
             for free in &mut mechanism.bodies {
                 free.momenta = free.target;
                 let motion = bodies[free.index].motion.as_deref_mut().expect("it is rigid");
@@ -131,9 +132,11 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             }
             // Something always does in a packing; rarely it meets what was not looked at.
             if packed(mechanism.touches.len()) {
-                if !self.missed(bodies, mechanism, dt) {
+                let contacts = self.contacts(bodies, dt);
+                if !missed(&contacts, bodies, mechanism, dt) {
                     break;
                 }
+                found = Some(contacts);
                 mechanism.before = mechanism.touches.iter().filter_map(|touch| touch.force(dt)).collect();
             }
         }
@@ -368,27 +371,22 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         }
     }
 
-    /// Whether rigid bodies, with the velocities found, would overlap by the end of the step where no contact was found.
-    fn missed(&self, bodies: &[Body<T, D>], mechanism: &Mechanism, dt: f64) -> bool {
-        let Some(surfaces) = self.surfaces else { return false };
-        surfaces.contacts(bodies, self.solve.rules, dt).iter().any(|contact| {
-            let motions = contact.bodies.map(|body| bodies[body].motion.as_deref().expect("it is rigid"));
-            let velocities = motions.map(|motion| join(motion.velocity(), motion.spin()));
-            let centers = contact.centers(motions.map(|motion| motion.center));
-            let relative = contact.relative(velocities.each_ref(), centers);
-            let after = contact.gap + Vector(relative).dot(Vector(contact.normal)) * dt;
-            let slots = contact.bodies.iter().filter_map(|body| mechanism.slot(*body));
-            let radius = slots.map(|slot| mechanism.bodies[slot].radius).fold(f64::INFINITY, f64::min);
-            after < contact.gap.min(0.0) - MISSED * radius
-        })
+    /// Where rigid bodies touch or may in this step.
+    fn contacts(&self, bodies: &[Body<T, D>], dt: f64) -> Vec<RigidContact> {
+        self.surfaces.map_or_else(Vec::new, |surfaces| surfaces.contacts(bodies, self.solve.rules, dt))
     }
 
-    /// Where rigid bodies touch in this step.
-    fn find_touches(&self, bodies: &[Body<T, D>], mechanism: &mut Mechanism, dt: f64) {
+    /// Takes up the contacts of rigid bodies in this step.
+    fn find_touches(
+        &self,
+        contacts: Vec<RigidContact>,
+        bodies: &[Body<T, D>],
+        mechanism: &mut Mechanism,
+        dt: f64,
+    ) {
         mechanism.touches.clear();
-        let Some(surfaces) = self.surfaces else { return };
         let rules = self.solve.rules;
-        for contact in surfaces.contacts(bodies, rules, dt) {
+        for contact in contacts {
             let motions = contact.bodies.map(|body| bodies[body].motion.as_deref().expect("it is rigid"));
             let slots = contact.bodies.map(|body| mechanism.slot(body));
             let start = [0, 1].map(|side| match slots[side] {
@@ -480,4 +478,23 @@ fn arm<T: Real, const D: usize>(lattice: &Lattice<T, D>, node: [i32; D], body: &
     let center = body.motion.as_deref().expect("it is rigid").center;
     let place = lattice.position_near(node, center);
     std::array::from_fn(|i| if i < D { place[i] - center[i] } else { 0.0 })
+}
+
+/// Whether rigid bodies, with the velocities found, would overlap by the end of the step where no contact was found.
+fn missed<T: Real, const D: usize>(
+    contacts: &[RigidContact],
+    bodies: &[Body<T, D>],
+    mechanism: &Mechanism,
+    dt: f64,
+) -> bool {
+    contacts.iter().any(|contact| {
+        let motions = contact.bodies.map(|body| bodies[body].motion.as_deref().expect("it is rigid"));
+        let velocities = motions.map(|motion| join(motion.velocity(), motion.spin()));
+        let centers = contact.centers(motions.map(|motion| motion.center));
+        let relative = contact.relative(velocities.each_ref(), centers);
+        let after = contact.gap + Vector(relative).dot(Vector(contact.normal)) * dt;
+        let slots = contact.bodies.iter().filter_map(|body| mechanism.slot(*body));
+        let radius = slots.map(|slot| mechanism.bodies[slot].radius).fold(f64::INFINITY, f64::min);
+        after < contact.gap.min(0.0) - MISSED * radius
+    })
 }

@@ -28,8 +28,8 @@ const ROUND_OFF: f64 = 16.0;
 const HARDER: f64 = 0.3;
 const SOFTER: f64 = 4.0;
 /// Rounds of Newton's method at most, and so few that rows may be harder.
-const ROUNDS: usize = 12;
-const FEW_ROUNDS: usize = 6;
+pub const ROUNDS: usize = 12;
+pub const FEW_ROUNDS: usize = 6;
 /// Rounds end where what is off has fallen to this part of what it was, in energy.
 const FALLEN: f64 = 1e-6;
 /// Parts of a round that are tried until less is off than before.
@@ -98,11 +98,13 @@ impl<const N: usize> Direct<N> {
         })
     }
 
-    /// Takes a step from these impulses and changes of velocities; says whether the equations could be solved.
+    /// Takes a step from these impulses and changes of velocities, in so many rounds of Newton's method at most; says
+    /// whether the equations could be solved.
     pub fn step(
         &mut self,
         (rows, changes): (&mut [Packed<N>], &mut [[f64; N]]),
         (held, contacts): (&[JointRow], &Contacts),
+        most: usize,
     ) -> bool {
         self.rounds += 1;
         let begun = changes.to_vec();
@@ -123,7 +125,7 @@ impl<const N: usize> Direct<N> {
         let mut off = self.off(rows, (&velocities, &begun), &now);
         let (mut size, mut rounds) = (self.size(&off), 0);
         let enough = FALLEN * size;
-        while rounds < ROUNDS && size > enough {
+        while rounds < most && size > enough {
             rounds += 1;
             self.rounds += 1;
             let mut matrix = BlockMatrix::new(&self.pattern, &self.own);

@@ -1,5 +1,6 @@
 //! Where the exact surfaces of rigid bodies are near each other.
 
+use super::super::build::whole;
 use crate::body::Body;
 use crate::contact::Rules;
 use crate::geometry::{Bounds, Shape, SignedDistance};
@@ -45,6 +46,8 @@ struct RigidSurface {
     /// A ball around the body where it is at the start; without bounds the radius is infinite.
     center: [f64; 3],
     reach: f64,
+    /// Half of the box around it where it is at the start [m]; infinite with images.
+    half: [f64; 3],
     /// How far apart the points are [m].
     spacing: f64,
     /// Its radius, if it is a ball or a disk [m].
@@ -102,7 +105,7 @@ struct Near<'a, T, const D: usize> {
 
 impl RigidSurfaces {
     /// The surfaces of a scene; none where no rigid body is free.
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new<const D: usize>(scene: &Scene) -> Self {
         if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
             return RigidSurfaces::default();
         }
@@ -116,6 +119,7 @@ impl RigidSurfaces {
                     areas: Vec::new(),
                     center: [0.0; 3],
                     reach: f64::INFINITY,
+                    half: [f64::INFINITY; 3],
                     spacing,
                     ball: None,
                 };
@@ -137,7 +141,9 @@ impl RigidSurfaces {
                 Shape::Ball { radius, .. } => Some(radius),
                 _ => None,
             };
-            RigidSurface { body: index, points, areas, center, reach, spacing, ball }
+            let whole = whole::<D>(scene, index).bounds();
+            let half = whole.map_or([f64::INFINITY; 3], |whole| whole.size().map(|size| 0.5 * size));
+            RigidSurface { body: index, points, areas, center, reach, half, spacing, ball }
         };
         let rigid = scene.bodies.iter().enumerate().filter(|(_, body)| body.is_rigid());
         let joined = (scene.joints.iter().filter(|joint| joint.holds()))
@@ -290,15 +296,21 @@ impl RigidSurfaces {
         let mut near = Vec::new();
         for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             // Where the other one is as this one sees it, so that far points need no turning.
-            let (seen, reach) = (one.pose.start(other.center), other.reach + margin + one.surface.spacing);
+            let seen = one.pose.start(other.center);
             let counts = counts(one, other);
             let limit = margin + one.surface.spacing;
+            let (reach, box_around) = (other.reach + limit, other.surface.half.map(|half| half + limit));
+            let turn = other.pose.orientation.transpose() * one.pose.orientation;
+            let outside = |off: Vector<f64, 3>| {
+                let across = |k: usize| (0..3).map(|j| turn.0[k][j] * off[j]).sum::<f64>();
+                off.dot(off) > reach * reach || (0..D).any(|k| across(k).abs() > box_around[k])
+            };
             let touches = |number: usize, last: &mut ([f64; 3], f64)| {
                 let point = one.surface.points[number];
                 let off = Vector(point) - Vector(seen);
                 // What is near a point that is far away is far away.
                 let way = (Vector(point) - Vector(last.0)).norm();
-                if off.dot(off) > reach * reach || way < SURELY * last.1 {
+                if way < SURELY * last.1 || outside(off) {
                     return None;
                 }
                 let place = one.pose.now(point);

@@ -13,14 +13,15 @@ pub(super) fn book<const D: usize>(
     bodies: usize,
 ) {
     all.clear();
+    // What a face takes is no pair's, as what a body does to itself.
+    let pair_of = |body: usize, partner: usize| [body, if partner < bodies { partner } else { body }];
     for memory in parted {
         let [body, partner] = [memory.body as usize, memory.partner as usize];
-        // What a face takes is no pair's, as what a body does to itself.
-        let partner = if partner < bodies { partner } else { body };
-        sums_of(all, [body, partner]).friction += memory.energy;
+        sums_of(all, pair_of(body, partner)).friction += memory.energy;
     }
     for touch in touches {
         let [body, partner] = [touch.memory.body as usize, touch.memory.partner as usize];
+        sums_of(all, pair_of(body, partner)).work += touch.deepening;
         if partner >= bodies {
             continue;
         }
@@ -62,8 +63,12 @@ fn add<const D: usize>(
     sums.normal += push.norm();
     sums.magnitude += magnitude;
     sums.friction += touch.friction;
-    sums.spread.add(touch.area, at);
-    sums.gap += touch.area * touch.gap;
+    // Where the layer does not press yet, friction may remember a pressure.
+    if magnitude > 0.0 {
+        sums.spread.add(touch.area, at);
+        sums.gap += touch.area * touch.gap.min(0.0);
+        sums.nodes += 1;
+    }
     sums.slip += touch.area * if touch.friction > 0.0 { touch.slip.norm() * dt } else { 0.0 };
     // What a free body gains is its own energy.
     if let Met::Rigid(r) = touch.met
@@ -72,5 +77,4 @@ fn add<const D: usize>(
         let speed = Vector::<f64, D>::of(rigid[r].velocity((touch.at - touch.away).space()));
         sums.work += (push + rub).dot(speed);
     }
-    sums.nodes += 1;
 }

@@ -46,8 +46,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Partner, PeriodLengths, Rigid, STIFFNESS, Touch, find,
-    parted, press, slip,
+    Deforming, Friction, Memory, Met, Neighbours, Partner, PeriodLengths, Rigid, STIFFNESS, Touch, begin,
+    find, parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -68,6 +68,8 @@ pub struct ReferenceBody<const D: usize> {
     courant: f64,
     /// Transit of this wave through its narrowest side [s].
     transit: f64,
+    /// How long its layers take to feel the depth at which its points came to touch [s].
+    settling: f64,
     /// How friction on it follows a change of pressure where its rule does not say so.
     memory: FrictionMemory,
 }
@@ -92,6 +94,8 @@ pub struct Touching<const D: usize> {
     pub touches: Vec<Touch<D>>,
     /// Those that did before.
     parted: Vec<Memory>,
+    /// Forces that layers have yet to feel, of which body [N].
+    unfelt: Vec<(usize, f64)>,
     /// What the layers on free rigid bodies add to the square of the fastest motion [1/s^2].
     pub rate: f64,
     /// What the nodes had before, where it is asked for.
@@ -196,6 +200,7 @@ impl<const D: usize> ReferenceBody<D> {
             shape: MirroredShape::new(&body.shape, faces.mirrors(), D),
             wave,
             transit: width / wave,
+            settling: width / wave * if scene.time.relax.is_some() { 1.0 } else { SETTLING },
             courant: in_contact(&form, &surface),
             surface,
             moduli: [modulus, material.law.elastic().shear_modulus.max(1e-3 * modulus)],
@@ -218,6 +223,9 @@ fn width<const D: usize>(shape: &Shape, faces: &HeldFaces) -> f64 {
 /// Transits of a longitudinal wave through the narrowest side of a body in which friction on it follows pressure, where
 /// no rule says how: a block that a spring drags slowly rubs by its coefficient from some four on.
 const TRANSITS: f64 = 5.0;
+/// Transits of a wave until most of the depth at which points came to touch is felt: longer than flat bodies bounce, or
+/// they would gain by it. Bodies that are to come to rest take one.
+const SETTLING: f64 = 10.0;
 
 /// After which lengths everything is there again for the bodies of a scene.
 pub(super) fn lengths<const D: usize>(scene: &Scene) -> PeriodLengths<D> {
@@ -295,7 +303,27 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         };
         let known = &state.references.touching;
         let mut touches = find((&bodies, &rigid), known, &meet, &mut workspace.neighbours, settings.lengths);
+        // A step in which a body comes to touch is too long for its layer: that presses from the next one on.
+        let layers = &mut state.references.layers;
+        layers.resize(bodies.len(), Layers::default());
+        let are_short: Vec<bool> = layers.iter().map(|own| own.lingers > 0.0).collect();
+        let mut unfelt = Vec::new();
+        touches.retain(|touch| {
+            let partner = match touch.met {
+                Met::Deforming(b, _) => b,
+                Met::Rigid(_) => touch.side,
+            };
+            let sides = [touch.side, partner];
+            sides.iter().for_each(|&side| layers[side].lingers = settings.references[side].transit);
+            let presses = sides.iter().all(|&side| are_short[side]);
+            if !presses {
+                unfelt.push((touch.side, touch.area * touch.pressure()));
+            }
+            presses
+        });
         let parted: Vec<Memory> = parted(known, &touches).copied().collect();
+        begin(&bodies, &rigid, &mut touches, dt);
+        unfelt.extend(touches.iter().map(|touch| (touch.side, touch.unfelt_force())));
         press(&mut bodies, &mut touches, &|touch| friction(settings, touch, count));
         workspace.reference_walls.clear();
         let mut own = Homeward::default();
@@ -319,17 +347,21 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             bodies[place].interior.velocities = vectors(&velocities);
         }
         loads.keep(&bodies, dt);
-        workspace.reference_touching = Touching { touches, parted, rate: 0.0, begun, loads };
+        workspace.reference_touching = Touching { touches, parted, unfelt, rate: 0.0, begun, loads };
         Ok(())
     }
 
     /// Slows the nodes down once all has acted on them, and books what loads did.
     fn slow_references(&mut self, dt: f64) {
         let Engine { settings, state, workspace, among, .. } = self;
-        let Touching { begun, loads, .. } = &workspace.reference_touching;
+        let Touching { unfelt, begun, loads, .. } = &workspace.reference_touching;
         let mut bodies = deforming(&settings.references, &mut state.references.nodes);
         if let Some((begun, slowing)) = begun {
             let here = |body: usize| !state.bodies[body].particles.is_empty();
+            // Bodies do not rest before their layers have felt all.
+            let unbalanced = &mut workspace.sums.nodes[0];
+            let own = unfelt.iter().filter(|(side, _)| here(bodies[*side].body));
+            own.for_each(|(_, force)| unbalanced.add(*force));
             let accelerations = &mut state.references.accelerations;
             begun.slow_down((&mut bodies, accelerations), slowing, (&mut workspace.sums.nodes, &here));
         }
@@ -352,7 +384,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let count = state.bodies.len();
         let bodies = deforming(&settings.references, &mut state.references.nodes);
         let layers = &mut state.references.layers;
-        layers.resize(bodies.len(), Layers::default());
         layers.iter_mut().for_each(|own| *own = Layers { energy: 0.0, lingers: (own.lingers - dt).max(0.0) });
         let mut store = |side: usize, energy: f64| {
             layers[side].energy += energy;
@@ -710,6 +741,7 @@ fn deforming<'a, const D: usize>(
         shape: &constants.shape,
         surface: &constants.surface,
         moduli: constants.moduli,
+        settling: constants.settling,
     };
     references.iter().zip(nodes).map(of).collect()
 }

@@ -8,7 +8,7 @@ use crate::scene::{Body, Scene};
 /// ```text
 /// v_0 = 1e-8 c                                        c: speed of waves in the body's material
 /// p_0 = sum m v_0
-/// E_0 = sum (m v_0^2 / 2 + m g d) + F d + 1e-14 |E|   d: 1e-6 cells, F: forces of loads and joints, E: of the ledger
+/// E_0 = sum m (1e-14 c^2 + g d) + F d + 1e-14 |E|     d: 1e-6 cells, F: forces of loads and joints, E: of the ledger
 /// ```
 /// A body that rests on another has next to no energy of its own, and what it has is round-off.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ impl Negligible {
     /// E_0 of all bodies [J].
     pub(super) fn energy(&self, view: &dyn View, ledger: &Ledger) -> f64 {
         let of_body = |(state, speed): (&BodyState, &f64)| match *speed > 0.0 {
-            true => state.mass * (0.5 * speed * speed + self.gravity * self.length),
+            true => state.mass * (ROUND_OFF * (speed / OF_WAVE_SPEED).powi(2) + self.gravity * self.length),
             false => 0.0,
         };
         let bodies: f64 = view.bodies().iter().zip(&self.speeds).map(of_body).sum();
