@@ -1,12 +1,12 @@
 //! What points that touch do to the nodes: the pressure and the shear of the layer.
 
-use super::{Deforming, Friction, LANDED, Memory, Met, Rigid, Touch};
+use super::{Deforming, Friction, LANDED, Memory, Met, PATIENCE, Rigid, Touch};
 use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::Vector;
 
-/// Lets the layers of points that come to touch in a step of `dt` [s] feel no more of their depth than they come deeper in
-/// such a step, or these would store energy that nobody gave: where steps become shorter as bodies touch, a point slides
-/// in under an edge, or bodies overlap at the start.
+/// Lets the layers of points that come to touch feel no more of their depth than these come deeper in a step of `dt` [s],
+/// or they would store energy that nobody gave: where steps become shorter as bodies touch, where a point slides in under
+/// an edge, and where bodies overlap at the start.
 pub fn begin<const D: usize>(
     bodies: &[Deforming<'_, D>],
     rigids: &[&dyn Rigid],
@@ -17,8 +17,7 @@ pub fn begin<const D: usize>(
         let approach = -touch.normal.dot(relative_velocity(bodies, rigids, touch));
         let felt = (approach * dt).clamp(0.0, -touch.gap);
         touch.memory.unfelt = -touch.gap - felt;
-        let [steps, patience] = LANDED;
-        touch.memory.patience = if -touch.gap <= steps * felt { patience } else { 1.0 };
+        touch.memory.patience = if -touch.gap <= LANDED * felt { PATIENCE } else { 1.0 };
         touch.gap = -felt;
     }
 }

@@ -41,9 +41,12 @@ use stickslip_mechanics::tensor::Vector;
 /// Stiffness of the layer over that of a cell of both bodies.
 pub const STIFFNESS: f64 = 4.0;
 
-/// Of a point that came as deep as its speed took it in one or two of the steps of bodies that touch nobody, in steps of
-/// those that do: as these gain what the layer comes to feel while it is pressed, it takes so much longer.
-const LANDED: [f64; 2] = [5.0, 10.0];
+/// A point that is at most so many times as deep as it comes in a step came there by its speed: the one or two steps
+/// before were longer, as the body touched nobody.
+const LANDED: f64 = 5.0;
+
+/// How much longer than others its layer takes to feel all of its depth: bodies gain by that while they are pressed.
+const PATIENCE: f64 = 10.0;
 
 /// A body that deforms, as contact sees it.
 pub struct Deforming<'a, const D: usize> {
@@ -188,8 +191,8 @@ impl<const D: usize> Touch<D> {
         0.5 * self.area * pressure * pressure / self.stiffness[0] + self.memory.energy
     }
 
-    /// Force that the layer has yet to feel [N].
+    /// Force that the layer has yet to feel where it is now [N].
     pub fn unfelt_force(&self) -> f64 {
-        self.area * self.stiffness[0] * self.memory.unfelt
+        self.area * self.stiffness[0] * (self.memory.unfelt - self.gap.max(0.0)).max(0.0)
     }
 }

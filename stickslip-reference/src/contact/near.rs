@@ -458,15 +458,14 @@ impl<const D: usize> Point<'_, '_, D> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let toward = Some(normal(body, self.number));
         let away = self.away(partner, about);
-        // There is one such place at most: it does not hang on where the search begins, but may not be found.
-        let found = look((&*partner.interior, partner.shape), self.at - away, about, toward);
-        if found.as_ref().is_some_and(|found| found.distance >= 0.0) {
+        let found = look((&*partner.interior, partner.shape), self.at - away, about, toward)?;
+        if found.distance >= 0.0 {
             return None;
         }
         let reach = AROUND * partner.interior.form.cell;
         let is_near = |point: &u32| {
             let place = partner.surface[*point as usize].place;
-            found.as_ref().is_none_or(|found| (place - found.place).norm() < reach)
+            (place - found.place).norm() < reach
         };
         let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
         let square = |point: u32| {

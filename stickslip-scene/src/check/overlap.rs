@@ -139,8 +139,8 @@ fn kept_overlap(scene: &Scene, overlap: &Overlap, others: usize) -> Warning {
     let becomes = match (rigid, on_own_grid) {
         (true, _) => "they part slowly, as their weight would let them fall by as much",
         (false, true) => {
-            "contact presses them apart within some transits of a wave, as an interference fit, and what does not hold \
-             them flies apart"
+            "contact presses them apart within some transits of a wave, as an interference fit; they fly apart where \
+             nothing holds them"
         }
         (false, false) => {
             "contact keeps them from going deeper and does not press them apart: the overlap stays, without stress; \

@@ -270,7 +270,7 @@ mod tests {
 
     fn scene(bodies: &str, contact: &str) -> Scene {
         let text = format!(
-            "space = {{ dimension = 'plane-strain', cell = 0.1 }}\ntime.end = 1\n\
+            "space = {{ dimension = 'plane-strain', cell = 0.1, interior = 'grid' }}\ntime.end = 1\n\
              materials.clay = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}\n\
              materials.iron = {{ density = 1, neo_hookean = {{ young_modulus = 9, poisson_ratio = 0 }} }}\n\
              bodies = [{bodies}]\ncontact = [{contact}]\n"
@@ -332,6 +332,10 @@ mod tests {
         let found = warnings(&ball("a", "clay", 0.0), "{ between = ['a', 'iron'] }");
         assert!(found[0].ends_with("matches no pair of bodies: no body is of `iron`"), "{found:?}");
         assert_eq!(warnings(&three(), "{ between = ['iron', 'iron'] }"), [""; 0]);
+        // On a grid of its own parts of a body touch.
+        let mut folding = scene(&three(), "{ between = ['a', 'a'] }");
+        folding.discretization.interior = Interior::Reference;
+        assert_eq!(idle(&folding).count(), 0);
     }
 
     #[test]

@@ -174,7 +174,7 @@ impl Display for Summary {
         if self.end.unsettled_nodes > 0 {
             writeln!(
                 f,
-                "  contact    {} times impulses were not found to the last digit asked for; the next step went on from them",
+                "  contact    {} times sweeps over bodies that touch ended before their impulses were found to the tolerance",
                 self.end.unsettled_nodes
             )?;
         }

@@ -108,6 +108,9 @@ pub struct Touching<const D: usize> {
 pub struct Layers {
     /// Energy that its part of the layers stores [J].
     energy: f64,
+    /// Whether it begins with the stress of another run, and what it touches is pressed as deep as it lies there.
+    #[serde(default)]
+    carried: bool,
     /// For how long its steps are as short as in contact yet [s]: a surface that bounces off and on under steps that
     /// jump takes energy from nowhere.
     lingers: f64,
@@ -212,7 +215,7 @@ impl<const D: usize> ReferenceBody<D> {
 
 /// Narrowest side of a body, of half a model that of the whole [m].
 fn width<const D: usize>(shape: &Shape, faces: &HeldFaces) -> f64 {
-    let sides = shape.bounds(D).map_or([f64::INFINITY; 3], |bounds| bounds.size());
+    let sides = shape.bounds(D).map_or([f64::INFINITY; 3], |bounds| faces.cut(bounds).size());
     let narrowest = |images: &dyn Fn(usize) -> f64| {
         (0..D).fold(f64::INFINITY, |least, axis| least.min(sides[axis] * images(axis)))
     };
@@ -306,16 +309,19 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         // A step in which a body comes to touch is too long for its layer: that presses from the next one on.
         let layers = &mut state.references.layers;
         layers.resize(bodies.len(), Layers::default());
-        let are_short: Vec<bool> = layers.iter().map(|own| own.lingers > 0.0).collect();
+        let before = layers.clone();
         let mut unfelt = Vec::new();
-        touches.retain(|touch| {
+        touches.retain_mut(|touch| {
             let partner = match touch.met {
                 Met::Deforming(b, _) => b,
                 Met::Rigid(_) => touch.side,
             };
             let sides = [touch.side, partner];
-            sides.iter().for_each(|&side| layers[side].lingers = settings.references[side].transit);
-            let presses = sides.iter().all(|&side| are_short[side]);
+            if touch.memory.age == 0.0 && sides.iter().any(|&side| before[side].carried) {
+                touch.memory.age = f64::MIN_POSITIVE;
+            }
+            sides.iter().for_each(|&side| layers[side].lingers = settings.references[side].transit + dt);
+            let presses = sides.iter().all(|&side| before[side].lingers > 0.0) || touch.memory.age > 0.0;
             if !presses {
                 unfelt.push((touch.side, touch.area * touch.pressure()));
             }
@@ -384,7 +390,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let count = state.bodies.len();
         let bodies = deforming(&settings.references, &mut state.references.nodes);
         let layers = &mut state.references.layers;
-        layers.iter_mut().for_each(|own| *own = Layers { energy: 0.0, lingers: (own.lingers - dt).max(0.0) });
+        layers.iter_mut().for_each(|own| {
+            *own = Layers { lingers: (own.lingers - dt).max(0.0), ..Layers::default() };
+        });
         let mut store = |side: usize, energy: f64| {
             layers[side].energy += energy;
             layers[side].lingers = settings.references[side].transit;
@@ -600,6 +608,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
             }
         }
+        // Faces of the domain have the numbers behind those of the bodies.
+        let [there, here] = [saved.bodies.len(), self.state.bodies.len()].map(|count| count as u32);
+        let walls = (0..self.settings.walls.len() as u32).map(|wall| (there + wall, here + wall));
+        numbers.extend(walls);
         let here = |memory: &Memory| {
             let [body, partner] = [memory.body, memory.partner].map(|number| numbers.get(&number).copied());
             Some(Memory { body: body?, partner: partner?, ..*memory })
@@ -617,6 +629,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         for (place, saved) in &carried.nodes {
             saved.put_in(&mut nodes[*place]);
             layers[*place] = saved.layers;
+        }
+        for &place in &carried.fitted {
+            layers[place].carried = true;
         }
         *touching = carried.touching;
         self.workspace.neighbours = Neighbours::default();

@@ -91,5 +91,26 @@ fn upright<const D: usize>(shape: &Shape, faces: &HeldFaces) -> Result<(Bounds, 
         _ => (shape, None),
     };
     let bounds = shape.bounds(D).filter(Bounds::is_finite).ok_or(NoForm::Unbounded)?;
-    Ok((bounds, Turn { of, dimension: D }))
+    Ok((faces.cut(bounds), Turn { of, dimension: D }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::HeldFace;
+    use super::*;
+
+    /// A bar between a mirror and a fixed face, cut out of a longer one: the box around it is that of the longer one.
+    #[test]
+    fn a_grid_ends_at_the_faces_that_hold_it() {
+        let whole = Shape::Box { min: [-1.0, 0.0, 0.0], max: [1.0, 0.5, 0.0] };
+        let left = Shape::HalfSpace { point: [0.0; 3], normal: [1.0, 0.0, 0.0] };
+        let mut faces = HeldFaces::default();
+        faces.0[0] =
+            [Some(HeldFace { at: 0.0, is_fixed: false }), Some(HeldFace { at: 1.0, is_fixed: true })];
+        let bar = Shape::Difference(vec![whole, left]);
+        let (frame, counts) = Frame::<2>::over(&bar, 0.1, &faces).expect("a bar of ten cells");
+        assert_eq!(counts, [10 + WIDTH, 5 + WIDTH]);
+        let last = frame.place(Vector([11.0, 1.0]), 0.1);
+        assert!((last - Vector([1.0, 0.0])).norm() < 1e-12, "{last:?}");
+    }
 }

@@ -9,7 +9,7 @@
 //! ```
 
 use super::{Followers, Form};
-use crate::geometry::Mirror;
+use crate::geometry::{Bounds, Mirror};
 use crate::tensor::Vector;
 use serde::Serialize;
 
@@ -57,6 +57,17 @@ impl HeldFaces {
             let outward = if side == 0 { -1.0 } else { 1.0 };
             (place[axis] - face.at).abs() < ON * cell && normal[axis] * outward > 1.0 - ON
         })
+    }
+
+    /// What of a box around a body lies before the faces.
+    pub fn cut(&self, mut bounds: Bounds) -> Bounds {
+        for (axis, side, face) in self.iter() {
+            match side {
+                0 => bounds.min[axis] = bounds.min[axis].max(face.at),
+                _ => bounds.max[axis] = bounds.max[axis].min(face.at),
+            }
+        }
+        bounds
     }
 
     /// How many images of the whole a body is along an axis, itself included: without end between two faces.

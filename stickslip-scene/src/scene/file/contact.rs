@@ -76,7 +76,7 @@ impl Choice for OverlapUse {
         (
             "kept",
             OverlapUse::Kept,
-            "Of bodies on the grid it stays, without stress: contact only keeps it from growing; those on grids of their own are pressed apart at once.",
+            "Of bodies on the grid it stays, without stress: contact only keeps it from growing; those on grids of their own are pressed apart within some transits of a wave.",
         ),
         (
             "press",
