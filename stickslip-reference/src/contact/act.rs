@@ -4,9 +4,9 @@ use super::{Deforming, Friction, LANDED, Memory, Met, PATIENCE, Rigid, Touch};
 use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::Vector;
 
-/// Lets the layers of points that come to touch feel no more of their depth than these come deeper in a step of `dt` [s],
-/// or they would store energy that nobody gave: where steps become shorter as bodies touch, where a point slides in under
-/// an edge, and where bodies overlap at the start.
+/// Lets the layers of points that come to touch feel no more of their depth than these come deeper in a step of `dt`
+/// [s], or they would store energy that nobody gave: where steps become shorter as bodies touch, where a point slides in
+/// under an edge, and where bodies overlap at the start.
 pub fn begin<const D: usize>(
     bodies: &[Deforming<'_, D>],
     rigids: &[&dyn Rigid],
@@ -112,11 +112,7 @@ pub fn slip<const D: usize>(
 
 /// How long a layer takes to feel the depth at which it began [s]: as long as the body that settles sooner.
 fn settling<const D: usize>(bodies: &[Deforming<'_, D>], touch: &Touch<D>) -> f64 {
-    let own = bodies[touch.side].settling;
-    match &touch.met {
-        Met::Deforming(b, _) => own.min(bodies[*b].settling),
-        Met::Rigid(_) => own,
-    }
+    touch.sides().iter().map(|&side| bodies[side].settling).fold(f64::INFINITY, f64::min)
 }
 
 /// Velocity of a body at a point that touches, against its partner's [m/s].

@@ -1,8 +1,8 @@
 //! Where a place lies in a body: its undeformed place, the distance to the surface and the way out.
 
 use crate::interior::Interior;
-use stickslip_mechanics::geometry::MirroredShape;
 use stickslip_mechanics::geometry::form::Weights;
+use stickslip_mechanics::geometry::{MirroredShape, SignedDistance};
 use stickslip_mechanics::tensor::{Matrix, Vector};
 
 /// What a body is at a place.
@@ -82,11 +82,19 @@ pub fn look<const D: usize>(
     let toward = toward?;
     let back = times(&inverse, toward) * (-BACK * cell);
     let before = shape.level((place + back).space());
-    let gradient = Vector::of(before.gradient);
+    let (gradient, distance) = came_through(&before, back);
     let (length, normal) = outward(gradient);
-    let normal = normal * (1.0 / length);
-    let distance = (before.distance - gradient.dot(back)) / length;
+    let (normal, distance) = (normal * (1.0 / length), distance / length);
     (length > 0.0 && facing(normal)).then_some(Seen { place, weights, distance, normal })
+}
+
+/// Direction and distance of the face that a point came through, from what is nearest where it was, `back` from here.
+pub(super) fn came_through<const D: usize>(
+    before: &SignedDistance,
+    back: Vector<f64, D>,
+) -> (Vector<f64, D>, f64) {
+    let gradient = Vector::of(before.gradient);
+    (gradient, before.distance - gradient.dot(back))
 }
 
 fn space<const D: usize>(rows: &[[f64; D]; D]) -> Matrix<f64> {

@@ -175,6 +175,14 @@ pub fn parted<'a, const D: usize>(
 }
 
 impl<const D: usize> Touch<D> {
+    /// The body and its partner, by their places in the list of those that deform; the body twice at a rigid one.
+    pub fn sides(&self) -> [usize; 2] {
+        match self.met {
+            Met::Deforming(b, _) => [self.side, b],
+            Met::Rigid(_) => [self.side; 2],
+        }
+    }
+
     /// Pressure of the layer [Pa].
     pub fn pressure(&self) -> f64 {
         self.stiffness[0] * (-self.gap).max(0.0)

@@ -1,7 +1,7 @@
 //! Which points of surfaces touch which partners.
 
 use super::images::{PeriodLengths, pairs};
-use super::look::{BACK, looks_at};
+use super::look::{BACK, came_through, looks_at};
 use super::{Deforming, Memory, Met, Rigid, STIFFNESS, Touch, look};
 use rayon::prelude::*;
 use stickslip_mechanics::geometry::form::digits;
@@ -456,17 +456,10 @@ impl<const D: usize> Point<'_, '_, D> {
     /// point of the neighbour's surface, whatever was known before.
     fn come_to(&self, b: usize, about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
-        let toward = Some(normal(body, self.number));
-        let away = self.away(partner, about);
-        let found = look((&*partner.interior, partner.shape), self.at - away, about, toward)?;
-        if found.distance >= 0.0 {
-            return None;
-        }
+        let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
+        let found = Vector::<f64, D>::of(self.in_body(b, memory(about))?.memory.place);
         let reach = AROUND * partner.interior.form.cell;
-        let is_near = |point: &u32| {
-            let place = partner.surface[*point as usize].place;
-            (place - found.place).norm() < reach
-        };
+        let is_near = |point: &u32| (partner.surface[*point as usize].place - found).norm() < reach;
         let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
         let square = |point: u32| {
             let place = place(partner, point as usize);
@@ -477,8 +470,7 @@ impl<const D: usize> Point<'_, '_, D> {
         let nearest = all.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         let near = NEAR * body.interior.form.cell.max(partner.interior.form.cell);
         let (_, nearest) = nearest.filter(|(square, _)| *square < near * near)?;
-        let place = partner.surface[nearest as usize].place;
-        self.in_body(b, Memory { place: place.space(), ..self.fresh(partner.body) })
+        self.in_body(b, memory(partner.surface[nearest as usize].place))
     }
 
     /// Where it lies in a partner, sought from where it did before; of itself what lies far from a place of its own.
@@ -530,9 +522,7 @@ impl<const D: usize> Point<'_, '_, D> {
             return face;
         }
         let back = toward * (-BACK * cell);
-        let (before, _) = nearest(rigid, self.at + back);
-        let through = Vector::of(before.gradient);
-        let distance = before.distance - through.dot(back);
+        let (through, distance) = came_through(&nearest(rigid, self.at + back).0, back);
         if looks_at(through, toward) && distance < 0.0 { (through, distance) } else { face }
     }
 }

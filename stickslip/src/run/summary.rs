@@ -174,7 +174,8 @@ impl Display for Summary {
         if self.end.unsettled_nodes > 0 {
             writeln!(
                 f,
-                "  contact    {} times sweeps over bodies that touch ended before their impulses were found to the tolerance",
+                "  contact    {} times sweeps over bodies that touch ended before their impulses were found to the \
+                 tolerance",
                 self.end.unsettled_nodes
             )?;
         }

@@ -391,8 +391,8 @@ fn a_dragged_block_rubs_by_its_coefficient() {
     assert!((pull - 1.0).abs() < 0.02, "{pull}");
 }
 
-/// A block lands flat on a rigid floor, straight and with friction. Its whole face touches in one step, and steps become
-/// shorter as it does: a layer that felt all of that depth at once gave it up to 35 % of its energy.
+/// A block lands flat on a rigid floor, straight and with friction. Its whole face touches in one step, and steps
+/// become shorter as it does: a layer that felt all of that depth at once gave it up to 35 % of its energy.
 #[test]
 fn flat_landings_keep_the_energy() {
     for (cell, velocity) in [(0.01, [0.5, -0.3]), (0.01, [0.0, -0.3]), (0.005, [0.5, -0.3])] {
@@ -414,8 +414,8 @@ fn flat_landings_keep_the_energy() {
     }
 }
 
-/// A block is drawn along under a frictionless rigid plate that is shorter than it: nothing holds it back, also not where
-/// its points come in and out under the plate's ends. These were pushed out by the plate's ends, with 4 % of the normal
+/// A block is drawn along under a frictionless rigid plate that is shorter than it: nothing holds it back, also not
+/// where its points come in and out under the plate's ends. These were pushed out by the plate's ends, with 4 % of the normal
 /// force, at any cell.
 #[test]
 fn the_ends_of_a_rigid_plate_do_not_hook() {

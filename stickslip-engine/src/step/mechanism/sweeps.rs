@@ -237,8 +237,8 @@ const FEWEST_ROUNDS: usize = 10;
 const ROWS_OF_ALL_ROUNDS: usize = 30_000;
 /// More rows than these are left to sweeps.
 const MOST_ROWS: usize = 7_000;
-/// In a packing a direct step pays that leaves less than this part of what was left before. Where much begins or ends to
-/// push or to slip at once, as at an impact, sweeps are as near after the same time.
+/// In a packing a direct step pays that leaves less than this part of what was left before. Where much begins or ends
+/// to push or to slip at once, as at an impact, sweeps are as near after the same time.
 const PAYS: f64 = 0.7;
 /// A direct step may take so many products of blocks a row: then it costs as much as some ten sweeps.
 const AFFORDABLE: usize = 40;

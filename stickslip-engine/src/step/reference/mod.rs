@@ -312,11 +312,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let before = layers.clone();
         let mut unfelt = Vec::new();
         touches.retain_mut(|touch| {
-            let partner = match touch.met {
-                Met::Deforming(b, _) => b,
-                Met::Rigid(_) => touch.side,
-            };
-            let sides = [touch.side, partner];
+            let sides = touch.sides();
             if touch.memory.age == 0.0 && sides.iter().any(|&side| before[side].carried) {
                 touch.memory.age = f64::MIN_POSITIVE;
             }

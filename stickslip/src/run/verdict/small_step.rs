@@ -21,7 +21,8 @@ impl Check for SmallStepCheck {
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         let ([step, first], bound) = (look.steps, look.bound(self.kind()));
         let share = step / first;
-        // Where the first step takes no time, the loop over steps says so. One without end bounds nothing: all is at rest.
+        // Where the first step takes no time, the loop over steps says so. One without end bounds nothing: all is at
+        // rest.
         if first == 0.0 || first.is_infinite() || share >= bound {
             return Vec::new();
         }
