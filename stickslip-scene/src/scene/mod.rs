@@ -6,6 +6,7 @@
 mod body_list;
 mod building;
 mod course;
+mod document_node;
 mod error;
 mod expression;
 mod file;

@@ -1,9 +1,10 @@
 //! `--set name=value`: parameters and keys that are replaced before a scene is read.
 
+use super::document_node::{DocumentNode, Value, joined};
 use super::error::Fault;
-use super::source::{DocumentNode, Value, joined, node};
 use super::suggestion::did_you_mean;
 use std::ops::Range;
+use std::sync::Arc;
 use toml::de::DeValue;
 
 /// Where an override stands among all documents: its name, and the start of its value.
@@ -27,21 +28,11 @@ pub(super) fn put(
 ) -> Result<(), Fault> {
     let written = value.trim();
     let start = place.value + (value.len() - value.trim_start().len());
-    let read = match DeValue::parse(written) {
-        Ok(parsed) => node(&parsed, String::new(), start),
-        Err(_) => DocumentNode {
-            key: String::new(),
-            name: String::new(),
-            name_span: place.name.clone(),
-            span: start..start + written.len(),
-            value: Value::Text(written.to_string()),
-        },
-    };
     let parameter = !name.contains(['.', '[']);
     if parameter {
-        let known = root.children().iter().find(|child| child.name == "parameters");
+        let known = root.children().iter().find(|child| child.name() == "parameters");
         let known: Vec<&str> =
-            known.iter().flat_map(|table| table.children()).map(|child| child.name.as_str()).collect();
+            known.iter().flat_map(|table| table.children()).map(|child| child.name()).collect();
         if !known.contains(&name) {
             let choices = if known.is_empty() { "there are none".to_string() } else { known.join(", ") };
             let found = format!("no parameter `{name}`");
@@ -56,8 +47,10 @@ pub(super) fn put(
     for step in path.split('.').flat_map(steps) {
         target = descend(target, step, place)?;
     }
-    let key = target.key.clone();
-    *target = DocumentNode { name: target.name.clone(), name_span: place.name.clone(), ..renamed(read, key) };
+    match DeValue::parse(written) {
+        Ok(parsed) => target.put(&place.name, (&parsed, start)),
+        Err(_) => target.put_text(&place.name, (written, start..start + written.len())),
+    }
     Ok(())
 }
 
@@ -78,25 +71,16 @@ fn descend<'n>(
     step: KeyStep<'_>,
     place: &OverridePlace,
 ) -> Result<&'n mut DocumentNode, Fault> {
-    let found = node.found();
-    let key = node.key.clone();
+    let (found, path) = (node.found(), node.path().clone());
+    let key = node.key();
     let fault = |found: String, allowed: &str| Fault::new(&key, found, allowed).at(place.name.clone());
     match (step, &mut node.value) {
         (KeyStep::Name(name), Value::Table(children)) => {
-            let at = children.iter().position(|child| child.name == name).unwrap_or_else(|| {
-                children.push(DocumentNode {
-                    key: joined(&key, name),
-                    name: name.to_string(),
-                    name_span: place.name.clone(),
-                    span: place.name.clone(),
-                    value: Value::Table(Vec::new()),
-                });
-                children.len() - 1
-            });
-            Ok(&mut children[at])
+            Ok(DocumentNode::entry(children, &path, (name, &place.name)))
         }
         (KeyStep::Number(number), Value::List(items)) => {
             let count = items.len();
+            let items = Arc::make_mut(items);
             let item = number.parse().ok().and_then(|number: usize| items.get_mut(number));
             item.ok_or_else(|| {
                 fault(format!("number {number} of a list of {count}"), "a number in the list, from 0")
@@ -105,22 +89,4 @@ fn descend<'n>(
         (KeyStep::Name(name), _) => Err(fault(format!("`.{name}` in {found}"), "a name in a table")),
         (KeyStep::Number(number), _) => Err(fault(format!("`[{number}]` in {found}"), "a number in a list")),
     }
-}
-
-/// The value with all its keys as if it stood at `key`.
-fn renamed(mut node: DocumentNode, key: String) -> DocumentNode {
-    match &mut node.value {
-        Value::Table(children) => {
-            for child in children {
-                *child = renamed(child.clone(), joined(&key, &child.name));
-            }
-        }
-        Value::List(items) => {
-            for (i, item) in items.iter_mut().enumerate() {
-                *item = renamed(item.clone(), format!("{key}[{i}]"));
-            }
-        }
-        _ => {}
-    }
-    DocumentNode { key, ..node }
 }

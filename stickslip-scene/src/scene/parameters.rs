@@ -1,11 +1,12 @@
 //! Named parameters: numbers and formulas that may use each other in any order, and words for text.
 
 use super::Parameter;
+use super::document_node::{DocumentNode, Value};
 use super::error::Fault;
 use super::expression::{Expression, PLACE};
 use super::formula::{self, Formula, FormulaError, FormulaNumber, Meaning, Names, NumberKind};
 use super::letters::is_no_letter;
-use super::source::{DocumentNode, Source, Value};
+use super::source::Source;
 use super::suggestion::did_you_mean;
 use super::units::Powers;
 use std::cell::{Cell, OnceCell, RefCell};
@@ -64,7 +65,7 @@ impl<'s> Parameters<'s> {
         Ok(Parameters {
             source,
             nodes,
-            by_name: nodes.iter().map(|node| (node.name.as_str(), node)).collect(),
+            by_name: nodes.iter().map(|node| (node.name(), node)).collect(),
             in_braces: OnceCell::new(),
             evaluated: RefCell::default(),
             pending: RefCell::default(),
@@ -84,12 +85,12 @@ impl<'s> Parameters<'s> {
         each: &mut dyn FnMut() -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         check_name(node)?;
-        let name = node.name.as_str();
+        let name = node.name();
         let is_taken =
             self.by_name.contains_key(name) || self.indices.borrow().iter().any(|(other, _)| other == name);
         if is_taken {
             let found = format!("the index `{name}`, which is the name of a parameter or of another index");
-            return Err(Fault::new(&node.key, found, "another name").at(node.name_span.clone()));
+            return Err(Fault::new(&node.key(), found, "another name").at(node.name_span()));
         }
         for value in 0..count {
             self.indices.borrow_mut().push((name.to_string(), value));
@@ -121,14 +122,14 @@ impl<'s> Parameters<'s> {
     pub fn resolved(&self) -> Result<BTreeMap<String, Parameter>, Fault> {
         let mut resolved = BTreeMap::new();
         for node in self.nodes {
-            let value = match self.quantity(&node.name) {
+            let value = match self.quantity(node.name()) {
                 Some(Ok(quantity)) => Parameter::Number(quantity.value),
-                Some(Err(fault)) if !(is_word(node) || self.is_used_as_text(&node.name)) => {
+                Some(Err(fault)) if !(is_word(node) || self.is_used_as_text(node.name())) => {
                     return Err(fault);
                 }
                 _ => Parameter::Text(self.text(node)?),
             };
-            resolved.insert(node.name.clone(), value);
+            resolved.insert(node.name().to_string(), value);
         }
         Ok(resolved)
     }
@@ -151,7 +152,7 @@ impl<'s> Parameters<'s> {
             Value::Text(text) => {
                 formula::compile(text, &Scope(self, variation)).map_err(|error| match error {
                     FormulaError::Parameter(fault) => fault,
-                    FormulaError::Here(misread) => Fault::new(&node.key, misread.found, misread.allowed)
+                    FormulaError::Here(misread) => Fault::new(&node.key(), misread.found, misread.allowed)
                         .help(misread.help)
                         .at(self.source.inside(node, misread.span)),
                 })
@@ -174,7 +175,7 @@ impl<'s> Parameters<'s> {
             self.put.set(0);
         }
         let too_long = || {
-            Fault::new(&node.key, "text that grows without end", "parameters that put less into each other")
+            Fault::new(&node.key(), "text that grows without end", "parameters that put less into each other")
         };
         let mut result = String::new();
         let mut at = 0;
@@ -188,7 +189,8 @@ impl<'s> Parameters<'s> {
                 continue;
             }
             let Some(length) = rest.find('}') else {
-                let fault = Fault::new(&node.key, "`{` without `}`", "a parameter in braces: \"{contact}\"");
+                let fault =
+                    Fault::new(&node.key(), "`{` without `}`", "a parameter in braces: \"{contact}\"");
                 return Err(fault
                     .help(Some("`{{` is a brace itself".to_string()))
                     .at(self.source.inside(node, open..text.len())));
@@ -206,8 +208,8 @@ impl<'s> Parameters<'s> {
         match result.chars().find(|&letter| is_no_letter(letter)) {
             Some(letter) => {
                 let found = format!("text with the control character {letter:?}");
-                Err(Fault::new(&node.key, found, "text of letters, digits, signs and spaces")
-                    .at(node.span.clone()))
+                Err(Fault::new(&node.key(), found, "text of letters, digits, signs and spaces")
+                    .at(node.span()))
             }
             None => Ok(result),
         }
@@ -218,7 +220,7 @@ impl<'s> Parameters<'s> {
         let place = || self.source.inside(node, shift..shift + text.len());
         if is_plain(text) && self.index(text).is_none() {
             let allowed = format!("a parameter ({})", self.names().join(", "));
-            return Err(Fault::new(&node.key, format!("unknown parameter `{text}`"), allowed)
+            return Err(Fault::new(&node.key(), format!("unknown parameter `{text}`"), allowed)
                 .help(did_you_mean(text, self.names().iter().map(String::as_str)))
                 .at(self.source.inside(node, shift - 1..shift + text.len() + 1)));
         }
@@ -226,14 +228,14 @@ impl<'s> Parameters<'s> {
             formula::compile(text, &Scope(self, Dependence::Constant)).map_err(|error| match error {
                 FormulaError::Parameter(fault) => fault,
                 FormulaError::Here(misread) => {
-                    Fault::new(&node.key, misread.found, misread.allowed).help(misread.help).at(place())
+                    Fault::new(&node.key(), misread.found, misread.allowed).help(misread.help).at(place())
                 }
             })?;
         let value = formula.expression.at(0.0);
         if formula.kind.fits(Powers::NONE) && value.is_finite() {
             return Ok(value.to_string());
         }
-        Err(Fault::new(&node.key, format!("`{text}`"), "a number without a unit in braces").at(place()))
+        Err(Fault::new(&node.key(), format!("`{text}`"), "a number without a unit in braces").at(place()))
     }
 
     /// The parameter as text, if there is one of that name.
@@ -253,7 +255,7 @@ impl<'s> Parameters<'s> {
             let kind = if formula.kind == NumberKind::Number { NumberKind::Any } else { formula.kind };
             Ok(FormulaNumber { value: formula.expression.at(0.0), kind })
         });
-        self.evaluated.borrow_mut().insert(&node.name, quantity.clone());
+        self.evaluated.borrow_mut().insert(node.name(), quantity.clone());
         Some(quantity)
     }
 
@@ -263,19 +265,19 @@ impl<'s> Parameters<'s> {
         node: &'s DocumentNode,
         evaluate: impl FnOnce() -> Result<T, Fault>,
     ) -> Result<T, Fault> {
-        if let Some(first) = self.pending.borrow().iter().position(|name| *name == node.name) {
+        if let Some(first) = self.pending.borrow().iter().position(|name| *name == node.name()) {
             let circle = self.pending.borrow()[first..].join(" -> ");
             let allowed = "parameters that do not need each other in a circle";
-            return Err(Fault::new(&node.key, format!("the circle {circle} -> {}", node.name), allowed));
+            return Err(Fault::new(&node.key(), format!("the circle {circle} -> {}", node.name()), allowed));
         }
         if self.pending.borrow().len() >= LONGEST_CHAIN {
             let found = format!("a chain of more than {LONGEST_CHAIN} parameters that wait for each other");
-            let fault = Fault::new(&node.key, found, "shorter chains");
+            let fault = Fault::new(&node.key(), found, "shorter chains");
             return Err(fault
                 .help(Some("put those that others need first".to_string()))
-                .at(node.name_span.clone()));
+                .at(node.name_span()));
         }
-        self.pending.borrow_mut().push(&node.name);
+        self.pending.borrow_mut().push(node.name());
         let result = evaluate();
         self.pending.borrow_mut().pop();
         result
@@ -294,7 +296,7 @@ impl<'s> Parameters<'s> {
     /// Names of the parameters, and of the indices where they have values.
     fn names(&self) -> Vec<String> {
         let indices = self.indices.borrow();
-        let parameters = self.nodes.iter().map(|node| node.name.clone());
+        let parameters = self.nodes.iter().map(|node| node.name().to_string());
         parameters.chain(indices.iter().map(|(name, _)| name.clone())).collect()
     }
 }
@@ -339,9 +341,9 @@ fn is_plain(name: &str) -> bool {
 
 /// Refuses the name of a key that is to be used in formulas, if they cannot.
 fn check_name(node: &DocumentNode) -> Result<(), Fault> {
-    let name = &node.name;
+    let name = node.name();
     let fault =
-        |found: String, allowed: &str| Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
+        |found: String, allowed: &str| Err(Fault::new(&node.key(), found, allowed).at(node.name_span()));
     if !is_plain(name) {
         return fault(format!("the name `{name}`"), "letters, digits and _, not beginning with a digit");
     }

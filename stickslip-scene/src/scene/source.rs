@@ -1,12 +1,12 @@
 //! The text of a scene and where each key stands in it.
 
+use super::document_node::{DocumentNode, Value};
 use super::error::{Fault, Mistake, SceneError};
 use super::{Problem, overrides};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The text of a scene and where each key stands in it, so that a [`Problem`] found later can be shown in its place.
@@ -37,33 +37,7 @@ struct Document {
     lines: OnceLock<Vec<usize>>,
 }
 
-/// A value with its key and its place.
-#[derive(Clone, Debug)]
-pub(super) struct DocumentNode {
-    /// The whole path: `bodies[1].shape.ball`.
-    pub key: String,
-    /// The last word of the path; empty in a list.
-    pub name: String,
-    /// Where the key stands.
-    pub name_span: Range<usize>,
-    /// Where the value stands; for a table under a header, the header.
-    pub span: Range<usize>,
-    pub value: Value,
-}
-
-/// What a scene file can hold.
-#[derive(Clone, Debug)]
-pub(super) enum Value {
-    Number(f64),
-    Text(String),
-    /// True, false, and dates: no key takes them.
-    Other(String),
-    List(Vec<DocumentNode>),
-    /// In the order of the file.
-    Table(Vec<DocumentNode>),
-}
-
-/// Values that a scene file may have, by the signs around them: what they take in memory is 250 bytes each.
+/// Values that a scene file may have, by the signs around them: what they take in memory is some 150 bytes each.
 const MOST_VALUES: usize = 10_000_000;
 /// Bytes that a key may have in its table: the paths of all values in it begin with it.
 const LONGEST_NAME: usize = 1000;
@@ -76,18 +50,11 @@ impl Source {
     pub(super) fn read(name: &str, text: &str, overrides: &[(String, String)]) -> Result<Source, SceneError> {
         let document =
             Document { name: name.to_string(), text: text.to_string(), start: 0, lines: OnceLock::new() };
-        let empty = DocumentNode {
-            key: String::new(),
-            name: String::new(),
-            name_span: 0..0,
-            span: 0..0,
-            value: Value::Table(vec![]),
-        };
         let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
         let mut source = Source {
             documents: vec![document],
             folder,
-            root: empty,
+            root: DocumentNode::file(&DeTable::default()),
             declared: Declared::new(),
             told: Vec::new(),
         };
@@ -105,7 +72,8 @@ impl Source {
             let found = format!("a key of {} bytes", span.len());
             return Err(source.show(Fault::new("", found, allowed).at(span)));
         }
-        source.root.value = table_value(table.get_ref(), "", 0);
+        source.root = DocumentNode::file(table.get_ref());
+        drop(table);
         for (name, value) in overrides {
             let start = source.end() + 1;
             let name = name.trim();
@@ -183,15 +151,15 @@ impl Source {
 
     /// Where in all documents the letter `at` of the text value `node` stands, if it is written without escapes.
     pub(super) fn inside(&self, node: &DocumentNode, at: Range<usize>) -> Range<usize> {
-        let Value::Text(text) = &node.value else { return node.span.clone() };
-        let document = self.document(node.span.start);
-        let written = &document.text[node.span.start - document.start..node.span.end - document.start];
+        let Value::Text(text) = &node.value else { return node.span() };
+        let document = self.document(node.span().start);
+        let written = &document.text[node.span().start - document.start..node.span().end - document.start];
         match written.find(text.as_str()) {
             Some(quote) if written.len() <= text.len() + 2 * quote => {
-                let start = node.span.start + quote;
+                let start = node.span().start + quote;
                 start + at.start..start + at.end
             }
-            _ => node.span.clone(),
+            _ => node.span(),
         }
     }
 
@@ -235,10 +203,10 @@ impl Source {
         while let Some(child) = node.child_around(key) {
             node = child;
         }
-        if node.key == key && !matches!(node.value, Value::Table(_)) || node.name.is_empty() {
-            node.span.clone()
+        if node.key() == key && !node.is_table() || node.name().is_empty() {
+            node.span()
         } else {
-            node.name_span.clone()
+            node.name_span()
         }
     }
 }
@@ -253,56 +221,6 @@ impl Document {
     }
 }
 
-impl DocumentNode {
-    /// Values in a list or a table.
-    pub fn children(&self) -> &[DocumentNode] {
-        match &self.value {
-            Value::List(children) | Value::Table(children) => children,
-            _ => &[],
-        }
-    }
-
-    /// The child that is at a key or around it.
-    fn child_around(&self, key: &str) -> Option<&DocumentNode> {
-        if let Value::List(items) = &self.value {
-            // Entries are found by their numbers.
-            let number = key.get(self.key.len()..)?.strip_prefix('[')?.split_once(']')?.0;
-            return items.get(number.parse::<usize>().ok()?).filter(|item| is_around(&item.key, key));
-        }
-        self.children().iter().find(|child| is_around(&child.key, key))
-    }
-
-    fn is_table(&self) -> bool {
-        matches!(self.value, Value::Table(_))
-    }
-
-    /// The value as the user would recognise it: `"6 MPa"`, `3`, `a table`.
-    pub fn found(&self) -> String {
-        match &self.value {
-            Value::Number(number) => format!("{number}"),
-            Value::Text(text) => format!("{text:?}"),
-            Value::Other(text) => format!("`{text}`"),
-            Value::List(items) if items.len() <= 3 && !items.iter().any(|item| item.is_table()) => {
-                format!("[{}]", items.iter().map(DocumentNode::found).collect::<Vec<_>>().join(", "))
-            }
-            Value::List(items) => format!("a list of {}", items.len()),
-            Value::Table(_) => "a table".to_string(),
-        }
-    }
-
-    /// A fault of this value.
-    pub fn fault(&self, allowed: impl Into<String>) -> Fault {
-        Fault::new(&self.key, self.found(), allowed).at(self.place())
-    }
-
-    fn place(&self) -> Range<usize> {
-        match self.value {
-            Value::Table(_) if !self.name.is_empty() => self.name_span.clone(),
-            _ => self.span.clone(),
-        }
-    }
-}
-
 /// A text of the same length without what would steer a terminal.
 fn without_control(text: &str) -> String {
     let letter = |letter: char| match letter.is_control() && !matches!(letter, '\n' | '\r' | '\t') {
@@ -310,16 +228,6 @@ fn without_control(text: &str) -> String {
         false => letter.to_string(),
     };
     text.chars().map(letter).collect()
-}
-
-/// Is `outer` the key `inner` or a key around it?
-fn is_around(outer: &str, inner: &str) -> bool {
-    inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-}
-
-/// The path of `name` in the table `key`.
-pub(super) fn joined(key: &str, name: &str) -> String {
-    if key.is_empty() { name.to_string() } else { format!("{key}.{name}") }
 }
 
 /// A key in a table, or in what it holds, that is longer than keys may be.
@@ -335,49 +243,6 @@ fn long_name(table: &DeTable<'_>) -> Option<Range<usize>> {
         true => Some(name.span()),
         false => within(value.get_ref()),
     })
-}
-
-fn table_value(table: &DeTable<'_>, key: &str, shift: usize) -> Value {
-    let mut nodes: Vec<DocumentNode> = table
-        .iter()
-        .map(|(name, value)| {
-            let span = name.span();
-            DocumentNode {
-                name: name.get_ref().to_string(),
-                name_span: span.start + shift..span.end + shift,
-                ..node(value, joined(key, name.get_ref()), shift)
-            }
-        })
-        .collect();
-    nodes.sort_by_key(|node| node.name_span.start);
-    Value::Table(nodes)
-}
-
-/// The value with all keys and places in it; `shift` is the start of its document.
-pub(super) fn node(value: &Spanned<DeValue<'_>>, key: String, shift: usize) -> DocumentNode {
-    let span = value.span().start + shift..value.span().end + shift;
-    let value = match value.get_ref() {
-        DeValue::String(text) => Value::Text(text.to_string()),
-        DeValue::Integer(integer) => {
-            let whole = i64::from_str_radix(integer.as_str(), integer.radix());
-            whole.map_or_else(
-                |_| Value::Other(integer.as_str().to_string()),
-                |whole| Value::Number(whole as f64),
-            )
-        }
-        DeValue::Float(float) => {
-            let number = float.as_str().parse();
-            number.map_or_else(|_| Value::Other(float.as_str().to_string()), Value::Number)
-        }
-        DeValue::Boolean(truth) => Value::Other(truth.to_string()),
-        DeValue::Datetime(date) => Value::Other(date.to_string()),
-        DeValue::Array(items) => {
-            let numbered = items.iter().enumerate();
-            Value::List(numbered.map(|(i, item)| node(item, format!("{key}[{i}]"), shift)).collect())
-        }
-        DeValue::Table(table) => table_value(table, &key, shift),
-    };
-    DocumentNode { key, name: String::new(), name_span: span.clone(), span, value }
 }
 
 fn syntax_fault(text: &str, error: &toml::de::Error) -> Fault {

@@ -10,8 +10,8 @@ use crate::geometry::{Shape, spline};
 use crate::packing::Placement;
 use crate::packing::array::{Array, Extent, Lattice, MOST_COPIES, NoArray};
 use crate::scene::Dimension;
+use crate::scene::document_node::{DocumentNode, joined};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, joined};
 use std::f64::consts::TAU;
 
 table! {
@@ -213,7 +213,7 @@ impl PathInput {
         }
         let is_closed = corners.first() == corners.last();
         if corners.len() < if is_closed { 4 } else { 2 } {
-            let key = self.spacing.node().key.replace("spacing", "points");
+            let key = self.spacing.node().key().replace("spacing", "points");
             let found = format!("{} points", corners.len());
             return Err(Fault::new(&key, found, "at least 2 points, 4 if the last is the first"));
         }

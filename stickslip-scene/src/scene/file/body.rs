@@ -12,9 +12,9 @@ use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VaryingSpin, VectorInput};
 use crate::geometry::{Arrangement, Bounds, Mirror, Shape};
 use crate::packing::Placement;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{self, BodyMotion, Domain, Expression, Face, FreeRigid, Interior, NamedMaterial};
 use schemars::JsonSchema;
 use std::collections::HashSet;
@@ -356,9 +356,10 @@ impl BodyKeys<'_> {
             let displaced = rigid.displacement.as_ref().map(VaryingVector::node);
             let driven = rigid.velocity.as_ref().map(OrOutside::node).or(displaced);
             if let Some(node) = driven.or(rigid.spin.as_ref().map(OrOutside::node)) {
-                let found = format!("`{}` prescribed to a free body", node.name);
-                let allowed = format!("the {} at the start as the body's own key, beside `rigid`", node.name);
-                return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
+                let found = format!("`{}` prescribed to a free body", node.name());
+                let allowed =
+                    format!("the {} at the start as the body's own key, beside `rigid`", node.name());
+                return Err(Fault::new(&node.key(), found, allowed).at(node.name_span()));
             }
             return Ok(BodyMotion::FreeRigid(FreeRigid {
                 velocity: self.velocity.as_ref().map_or(Ok([0.0; 3]), |velocity| velocity.value(context))?,
@@ -368,16 +369,16 @@ impl BodyKeys<'_> {
             }));
         }
         if let Some(node) = start {
-            let found = format!("`{}` of a rigid body", node.name);
-            let allowed = format!("its motion in rigid = {{ {} = ... }}", node.name);
-            return Err(Fault::new(&node.key, found, allowed).at(node.name_span.clone()));
+            let found = format!("`{}` of a rigid body", node.name());
+            let allowed = format!("its motion in rigid = {{ {} = ... }}", node.name());
+            return Err(Fault::new(&node.key(), found, allowed).at(node.name_span()));
         }
         let rest = || Ok([0.0; 3].map(Expression::Constant));
         let velocity = match (&rigid.velocity, &rigid.displacement) {
             (Some(_), Some(displacement)) => {
                 let node = displacement.node();
-                return Err(Fault::new(&node.key, "`displacement` beside `velocity`", "one of the two")
-                    .at(node.name_span.clone()));
+                return Err(Fault::new(&node.key(), "`displacement` beside `velocity`", "one of the two")
+                    .at(node.name_span()));
             }
             (Some(velocity), None) => velocity.resolve(
                 context,

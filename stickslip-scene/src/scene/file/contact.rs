@@ -6,8 +6,8 @@ use super::quantity::{
 };
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{Body, ContactLaw, ContactRule, FrictionMemory, NamedMaterial, Normal, Press};
 use schemars::JsonSchema;
 use std::collections::HashSet;
@@ -234,7 +234,7 @@ impl Contact {
             (_, f64::INFINITY) => "surfaces that stick in any case have no strength to remember",
             _ => return Ok(Some(memory)),
         };
-        context.tell(&length.node().key, format!("does not act, nor does `friction_memory_speed`: {why}"));
+        context.tell(&length.node().key(), format!("does not act, nor does `friction_memory_speed`: {why}"));
         Ok(Some(memory))
     }
 
@@ -286,10 +286,10 @@ impl Contact {
         ];
         let dead: Vec<DocumentNode> = dead.into_iter().flatten().collect();
         let Some((first, others)) = dead.split_first() else { return Ok(()) };
-        let others: Vec<String> = others.iter().map(|node| format!("`{}`", node.name)).collect();
+        let others: Vec<String> = others.iter().map(|node| format!("`{}`", node.name())).collect();
         let others =
             if others.is_empty() { String::new() } else { format!(", nor do {}", others.join(", ")) };
-        context.tell(&first.key, format!("does not act{others}: {why}"));
+        context.tell(&first.key(), format!("does not act{others}: {why}"));
         Ok(())
     }
 }

@@ -7,9 +7,9 @@ use super::quantity::{Duration, Measure, QuantityInput};
 use super::read::Read;
 use super::text::Text;
 use crate::scene::TimeTable;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use csv::StringRecord;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -134,8 +134,7 @@ impl CsvTable<'_, '_> {
         let unit = |side: usize, read: &dyn Fn(&str) -> Option<f64>, example: String| {
             heads.get(places[side]).map_or(Ok(1.0), |head| scale(head, read, &example))
         };
-        let node =
-            |text: &str| DocumentNode { value: Value::Text(text.to_string()), ..self.file.node().clone() };
+        let node = |text: &str| self.file.node().with(Value::Text(text.to_string()));
         let time =
             |unit: &str| QuantityInput::<Duration>::new(&node(&format!("1 {unit}"))).value(self.context).ok();
         let value = |unit: &str| {

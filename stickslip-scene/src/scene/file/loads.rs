@@ -11,9 +11,9 @@ use super::read::{Read, table};
 use super::repeat::Repeat;
 use super::shape::ShapeInput;
 use super::text::{Choice, Text, Word};
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{
     self, Action, Body, Dashpot, Expression, Extent, Part, SupportMotion, TimeTable, is_pattern,
@@ -291,8 +291,8 @@ impl Support {
     fn resolve(&self, context: &Context) -> Result<scene::Support, Fault> {
         if let (Some(_), Some(velocity)) = (&self.displacement, &self.velocity) {
             let node = &velocity.0.node;
-            return Err(Fault::new(&node.key, "`velocity` beside `displacement`", "one of the two")
-                .at(node.name_span.clone()));
+            return Err(Fault::new(&node.key(), "`velocity` beside `displacement`", "one of the two")
+                .at(node.name_span()));
         }
         let mut support = scene::Support::fixed();
         if let Some(displacement) = &self.displacement {
@@ -329,8 +329,8 @@ impl Load {
         ];
         let allowed = "one of force, traction, pressure, acceleration and temperature";
         if let Some(second) = nodes.into_iter().flatten().nth(1) {
-            let found = format!("`{}` beside another", second.name);
-            return Err(Fault::new(&second.key, found, allowed).at(second.name_span.clone()));
+            let found = format!("`{}` beside another", second.name());
+            return Err(Fault::new(&second.key(), found, allowed).at(second.name_span()));
         }
         if let Some(temperature) = &self.temperature {
             return Ok(Action::Temperature(temperature.resolve(context, Dependence::TimeAndPlace)?));
@@ -481,8 +481,8 @@ table! {
     }
 }
 
-/// Rows of a table.
-pub struct Rows(DocumentNode, Vec<[DocumentNode; 2]>);
+/// Rows of a table: the list of them.
+pub struct Rows(DocumentNode);
 
 impl TableInput {
     fn resolve<M: Measure>(&self, node: &DocumentNode, context: &Context) -> Result<TimeTable, Fault> {
@@ -496,9 +496,10 @@ impl TableInput {
 
 impl Rows {
     fn resolve<M: Measure>(&self, context: &Context) -> Result<TimeTable, Fault> {
-        let Rows(node, rows) = self;
+        let Rows(node) = self;
         let mut table: Vec<[f64; 2]> = Vec::new();
-        for [time, value] in rows {
+        for row in node.children() {
+            let [time, value] = Rows::pair(row)?;
             let time_input = QuantityInput::<Duration>::new(time);
             let at = time_input.value(context)?;
             if let Some([before, _]) = table.last().filter(|[before, _]| *before >= at) {
@@ -515,6 +516,11 @@ impl Rows {
         }
         TimeTable::new(table).ok_or_else(|| node.fault(Rows::wanted()))
     }
+
+    fn pair(row: &DocumentNode) -> Result<&[DocumentNode; 2], Fault> {
+        let pair = if let Value::List(pair) = &row.value { (&pair[..]).try_into().ok() } else { None };
+        pair.ok_or_else(|| row.fault("a time and a value"))
+    }
 }
 
 impl Read for Rows {
@@ -524,14 +530,8 @@ impl Read for Rows {
 
     fn read(node: &DocumentNode) -> Result<Self, Fault> {
         let Value::List(rows) = &node.value else { return Err(node.fault(Self::wanted())) };
-        let pair = |row: &DocumentNode| match &row.value {
-            Value::List(pair) => match &pair[..] {
-                [time, value] => Ok([time.clone(), value.clone()]),
-                _ => Err(row.fault("a time and a value")),
-            },
-            _ => Err(row.fault("a time and a value")),
-        };
-        Ok(Rows(node.clone(), rows.iter().map(pair).collect::<Result<_, _>>()?))
+        rows.iter().try_for_each(|row| Rows::pair(row).map(|_| ()))?;
+        Ok(Rows(node.clone()))
     }
 }
 

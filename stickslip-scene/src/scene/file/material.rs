@@ -8,14 +8,15 @@ use crate::material::{
     ANGLE, Constant, Form, Given, LAWS, Material, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law,
 };
 use crate::outside::OUTSIDE;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::{did_you_mean, listed};
 use crate::scene::units::Powers;
 use crate::scene::{Dimension, NamedMaterial, Problem, VolumeChange};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 impl Choice for VolumeChange {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
@@ -29,7 +30,7 @@ impl Choice for VolumeChange {
 }
 
 /// The materials by name.
-pub struct Materials(Vec<DocumentNode>);
+pub struct Materials(Arc<[DocumentNode]>);
 
 impl Materials {
     /// The materials in the order of the file.
@@ -43,12 +44,12 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
     let laws: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
     let own = ["density", "volume_change", "thermal_expansion"];
     let keys: Vec<&str> = own.into_iter().chain(laws.iter().copied()).chain([OUTSIDE]).collect();
-    if node.name == "any" {
-        return Err(Fault::new(&node.key, "the name `any`, which matches every body", "another name"));
+    if node.name() == "any" {
+        return Err(Fault::new(&node.key(), "the name `any`, which matches every body", "another name"));
     }
-    let other = |child: &&DocumentNode| !keys.contains(&child.name.as_str());
+    let other = |child: &&DocumentNode| !keys.contains(&child.name());
     if let Some((child, answer)) =
-        node.children().iter().find(other).and_then(|child| Some((child, other_laws::answer(&child.name)?)))
+        node.children().iter().find(other).and_then(|child| Some((child, other_laws::answer(child.name())?)))
     {
         return Err(unknown_key(child, &keys).help(Some(answer.to_string())));
     }
@@ -58,7 +59,7 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
     let volume_change = volume_change.map_or(Ok(VolumeChange::Own), |word| word.value(context))?;
     if volume_change == VolumeChange::Averaged && context.dimension == Dimension::PlaneStress {
         let found = "\"averaged\" in plane stress".to_string();
-        let key = format!("{}.volume_change", node.key);
+        let key = format!("{}.volume_change", node.key());
         let help = Some("a plate takes the thickness that leaves its volume free: nothing locks".to_string());
         return Err(Problem { key, found, allowed: "\"own\"".to_string(), help }.into());
     }
@@ -67,18 +68,18 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         alpha
             .checked(context, "a number per kelvin, of magnitude below 0.01, like 1.2e-5", |x| x.abs() < 0.01)
     })?;
-    let is_law = |child: &&DocumentNode| child.name == OUTSIDE || laws.contains(&child.name.as_str());
+    let is_law = |child: &&DocumentNode| child.name() == OUTSIDE || laws.contains(&child.name());
     let mut named = node.children().iter().filter(is_law);
     let Some(table) = named.next() else {
         let example = "neo_hookean = { bulk_modulus = \"6 MPa\", shear_modulus = \"3 MPa\" }";
         let allowed = format!("a law ({}), like {example}", laws.join(", "));
-        return Err(Fault::new(&node.key, "no law", allowed).at(node.name_span.clone()));
+        return Err(Fault::new(&node.key(), "no law", allowed).at(node.name_span()));
     };
     if let Some(second) = named.next() {
-        let found = format!("a second law, `{}` besides `{}`", second.name, table.name);
-        return Err(Fault::new(&second.key, found, "one law").at(second.name_span.clone()));
+        let found = format!("a second law, `{}` besides `{}`", second.name(), table.name());
+        return Err(Fault::new(&second.key(), found, "one law").at(second.name_span()));
     }
-    let built = match LAWS.iter().find(|law| law.name == table.name) {
+    let built = match LAWS.iter().find(|law| law.name == table.name()) {
         Some(law) => law.build(&constants(table, (law.constants, None), context)?),
         None => {
             let given = constants(table, (OUTSIDE_CONSTANTS, Some("law")), context)?;
@@ -86,8 +87,9 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         }
     };
     let law = built.map_err(|bad| {
-        let child = bad.key.as_ref().and_then(|key| table.children().iter().find(|child| child.name == *key));
-        let key = child.unwrap_or(table).key.clone();
+        let child =
+            bad.key.as_ref().and_then(|key| table.children().iter().find(|child| child.name() == *key));
+        let key = child.unwrap_or(table).key();
         let found = match child {
             Some(child) if !bad.found.is_empty() && bad.found != child.found() => {
                 format!("{} ({})", child.found(), bad.found)
@@ -100,14 +102,14 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
         let help =
             "it opens by particles: with averaged volumes a column of sand lost 40 % of its height at rest";
         return Err(Problem {
-            key: format!("{}.volume_change", node.key),
+            key: format!("{}.volume_change", node.key()),
             found: "\"averaged\" of `drucker_prager`".to_string(),
             allowed: "\"own\"".to_string(),
             help: Some(help.to_string()),
         }
         .into());
     }
-    Ok(NamedMaterial { name: node.name.clone(), density, law, volume_change, thermal_expansion })
+    Ok(NamedMaterial { name: node.name().to_string(), density, law, volume_change, thermal_expansion })
 }
 
 /// The constants of a law in SI units; the key `other` is none of them.
@@ -121,15 +123,15 @@ fn constants(
         return Err(table.fault(format!("a table {{ ... }} with the keys {}", names.join(", "))));
     };
     let mut given = Given::default();
-    for child in children.iter().filter(|child| other != Some(child.name.as_str())) {
-        let constant = declared.iter().find(|constant| constant.name == child.name);
+    for child in children.iter().filter(|child| other != Some(child.name())) {
+        let constant = declared.iter().find(|constant| constant.name == child.name());
         let constant = constant.ok_or_else(|| unknown_key(child, &names))?;
         let values = match constant.form {
             Form::Number(wanted) => vec![number(child, &wanted, context)?],
             Form::Pairs(wanted, _) => pairs(child, (constant, &wanted), context)?,
             Form::Word(words) => vec![word(child, words, context)?],
         };
-        given.put(child.name.clone(), values);
+        given.put(child.name().to_string(), values);
     }
     Ok(given)
 }
@@ -167,7 +169,7 @@ fn pairs(
     let allowed = || format!("a list of pairs [{}, {}]: {}", first.name, second.name, constant.summary);
     let Value::List(rows) = &node.value else { return Err(node.fault(allowed())) };
     let mut values = Vec::new();
-    for row in rows {
+    for row in rows.iter() {
         let Value::List(pair) = &row.value else { return Err(row.fault(allowed())) };
         let [a, b] = &pair[..] else { return Err(row.fault(allowed())) };
         values.extend([number(a, first, context)?, number(b, second, context)?]);

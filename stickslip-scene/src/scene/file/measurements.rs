@@ -9,9 +9,9 @@ use super::space::corners;
 use super::text::{Choice, Count, Text, Word, names_in};
 use super::vector::VectorInput;
 use crate::scene::FACES;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{self, Anchor, Body, Dimension, Observable, Reading};
 use crate::tensor::Vector;
@@ -305,7 +305,7 @@ impl Probe {
             (None, None) => return Ok(vec![probe(self.name.new_name(context, taken)?, at)]),
             (Some(to), Some(count)) => (to.value(context)?, count.value(context, 2..=MOST_ON_LINE)?),
             (Some(to), None) => {
-                let key = to.node().key.replace(".to", ".count");
+                let key = to.node().key().replace(".to", ".count");
                 return Err(Fault::new(&key, "nothing, the key is missing", "how many probes the line has"));
             }
             (None, Some(count)) => {

@@ -40,9 +40,10 @@ mod vector;
 
 pub use files::{Disk, SceneFiles};
 
+use super::document_node::{DocumentNode, Value};
 use super::error::Fault;
 use super::parameters::{Dependence, Parameters};
-use super::source::{Declared, DocumentNode, Source, Told, Value};
+use super::source::{Declared, Source, Told};
 use super::{Damping, Dimension, Gravity, Scene};
 use crate::check;
 use named_shapes::NamedShapes;
@@ -52,6 +53,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::path::Path;
+use std::sync::Arc;
 use text::Text;
 
 /// What values in a file are read with.
@@ -143,7 +145,7 @@ table! {
 }
 
 /// Named parameters: [`Parameters`] reads them.
-pub struct ParameterTable(Vec<DocumentNode>);
+pub struct ParameterTable(Arc<[DocumentNode]>);
 
 /// The scene that a source describes.
 ///

@@ -5,8 +5,8 @@ use super::read::Read;
 use super::shape::ShapeInput;
 use super::text::Text;
 use crate::geometry::{Revolved, Shape};
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
@@ -49,10 +49,14 @@ impl ShapeTable {
             let (size, depth) = (size(&shape), 1 + depth.get());
             if depth > DEEPEST {
                 let found = format!("a shape that names others {DEEPEST} deep");
-                return Err(Fault::new(&node.key, found, "shapes that are nearer to those they are made of")
-                    .at(node.name_span.clone()));
+                return Err(Fault::new(
+                    &node.key(),
+                    found,
+                    "shapes that are nearer to those they are made of",
+                )
+                .at(node.name_span()));
             }
-            all.borrow_mut().push(NamedShape { name: node.name.clone(), shape, size, depth });
+            all.borrow_mut().push(NamedShape { name: node.name().to_string(), shape, size, depth });
         }
         Ok(())
     }

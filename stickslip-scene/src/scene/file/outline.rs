@@ -8,8 +8,8 @@ use super::solid::{beside, space_only};
 use super::vector::VectorInput;
 use crate::geometry::{Shape, spline};
 use crate::scene::Dimension;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use schemars::JsonSchema;
 
 table! {
@@ -82,7 +82,7 @@ impl Revolved {
             (Some(_), Some(corners)) => {
                 let node = &corners.1;
                 return Err(
-                    Fault::new(&node.key, "`spline` beside `polygon`", allowed).at(node.name_span.clone())
+                    Fault::new(&node.key(), "`spline` beside `polygon`", allowed).at(node.name_span())
                 );
             }
             (None, None) => {
@@ -105,8 +105,8 @@ impl Revolved {
             let found = format!("a curve beyond the axis, {:.4} m at {z:.4} m along it", -rho);
             let help =
                 "more points near the axis; a curve from the axis to the axis begins and ends with one on it";
-            return Err(Fault::new(&corners.1.key, found, "a curve on one side of the axis")
-                .at(corners.1.span.clone())
+            return Err(Fault::new(&corners.1.key(), found, "a curve on one side of the axis")
+                .at(corners.1.span())
                 .help(Some(help.to_string())));
         }
         let shape = Shape::revolved(points, self.center.value(context)?, direction(&self.axis, context)?);

@@ -7,9 +7,9 @@ use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::{Choice, Count, Text, Word, names_in};
 use crate::column;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use crate::scene::{self, Body, Compression, NamedMaterial, Precision, SeriesFormat, SnapshotContent};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -188,7 +188,7 @@ impl Outputs {
         if let Some(time) = self.particles_at.iter().flatten().find(late) {
             let times = if count == 1 { "this time is".to_string() } else { format!("{count} times are") };
             let why = format!("{times} after the end of the run, {end} s: no snapshot comes of it");
-            context.tell(&time.node().key, why);
+            context.tell(&time.node().key(), why);
         }
         if let Some(first) = resolved.fringes.as_ref().map(|fringes| fringes.first).filter(|&at| at > end) {
             let why = format!("the first frame, at {first} s, is after the end of the run, {end} s");

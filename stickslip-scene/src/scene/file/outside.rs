@@ -4,8 +4,8 @@ use super::Context;
 use super::read::{Read, check_keys, field};
 use super::text::Text;
 use crate::outside::OUTSIDE;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{Expression, OutsideValue};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -50,7 +50,7 @@ impl<I: Read> Read for OrOutside<I> {
 
     fn read(node: &DocumentNode) -> Result<Self, Fault> {
         let outside =
-            matches!(&node.value, Value::Table(children) if children.iter().any(|c| c.name == OUTSIDE));
+            matches!(&node.value, Value::Table(children) if children.iter().any(|c| c.name() == OUTSIDE));
         let input = if outside {
             check_keys(node, &[OUTSIDE])?;
             Err(field(node, OUTSIDE)?)

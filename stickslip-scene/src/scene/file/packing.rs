@@ -9,8 +9,8 @@ use super::text::{Choice, Count, Text, Word};
 use super::vector::{SpinInput, VectorInput, direction};
 use crate::geometry::{Arrangement, Shape, fits};
 use crate::packing::{self, Amount, MOST_GRAINS, NoPacking, Sizes};
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::{self, Domain, Interior, NamedMaterial};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -140,8 +140,7 @@ impl Packing {
             }
             (Some(_), Some(fraction)) => {
                 let node = fraction.node();
-                Err(Fault::new(&node.key, "`solid_fraction` beside `count`", allowed)
-                    .at(node.name_span.clone()))
+                Err(Fault::new(&node.key(), "`solid_fraction` beside `count`", allowed).at(node.name_span()))
             }
             (None, None) => Err(Fault::new(declared, "neither `count` nor `solid_fraction`", allowed)),
         }
@@ -226,17 +225,17 @@ impl SizesInput {
             _ => Err(node.fault(allowed)),
         };
         let share = |node: &DocumentNode| pair(node, "a size and its share, such as [1.5, 0.3]");
-        let sizes = match kind.name.as_str() {
+        let sizes = match kind.name() {
             "numbers" | "volumes" => {
                 let shares = kind.children().iter().map(share).collect::<Result<Vec<_>, _>>()?;
                 if shares.is_empty() {
                     return Err(kind.fault("a list of sizes and shares: [[1, 0.7], [1.5, 0.3]]"));
                 }
-                if kind.name == "numbers" { Sizes::Numbers(shares) } else { Sizes::Volumes(shares) }
+                if kind.name() == "numbers" { Sizes::Numbers(shares) } else { Sizes::Volumes(shares) }
             }
             "uniform" | "normal" | "lognormal" => {
                 let [a, b] = pair(kind, "two numbers: [0.8, 1.2]")?;
-                match kind.name.as_str() {
+                match kind.name() {
                     "uniform" if a > b => return Err(kind.fault("the smallest size first")),
                     "uniform" => Sizes::Uniform(a, b),
                     "normal" => Sizes::Normal(a, b),

@@ -255,8 +255,8 @@ impl PointCloud {
         };
         let beside = [self.velocity.as_ref().map(VectorInput::node), self.spin.as_ref().map(SpinInput::node)];
         if let Some(node) = beside.into_iter().flatten().next().filter(|_| has_velocity) {
-            let found = format!("`{}` beside velocities in {file}", node.name);
-            return Err(Fault::new(&node.key, found, "one of the two").at(node.name_span.clone()));
+            let found = format!("`{}` beside velocities in {file}", node.name());
+            return Err(Fault::new(&node.key(), found, "one of the two").at(node.name_span()));
         }
         if self.rigid.is_some() && has_velocity {
             return Err(self.file_fault(

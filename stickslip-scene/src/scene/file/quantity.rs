@@ -3,9 +3,9 @@
 use super::Context;
 use super::read::Read;
 use crate::scene::Expression;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::parameters::Dependence;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::units::Powers;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
@@ -165,7 +165,7 @@ pub fn evaluate(
         return Ok(formula.expression);
     }
     let found = format!("{}, {}", node.found(), formula.kind.name());
-    Err(Fault::new(&node.key, found, allowed).at(node.span.clone()))
+    Err(Fault::new(&node.key(), found, allowed).at(node.span()))
 }
 
 impl<M: Measure> Read for QuantityInput<M> {

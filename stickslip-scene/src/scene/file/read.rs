@@ -1,7 +1,7 @@
 //! From located values to the tables of a scene file.
 
+use crate::scene::document_node::{DocumentNode, Value, joined};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value, joined};
 use crate::scene::suggestion::did_you_mean;
 
 /// Something that a key of a scene file can hold.
@@ -20,7 +20,7 @@ pub trait Read: Sized {
     /// # Errors
     /// Whatever must be there.
     fn absent(table: &DocumentNode, name: &str) -> Result<Self, Fault> {
-        Err(Fault::new(&joined(&table.key, name), "nothing, the key is missing", Self::wanted()))
+        Err(Fault::new(&joined(&table.key(), name), "nothing, the key is missing", Self::wanted()))
     }
 }
 
@@ -57,7 +57,7 @@ impl<T: Read> Read for Vec<T> {
         match &node.value {
             Value::List(items) => items.iter().map(T::read).collect(),
             Value::Table(_) => {
-                let help = format!("tables in a list have two brackets: [[{}]]", node.key);
+                let help = format!("tables in a list have two brackets: [[{}]]", node.key());
                 Err(node.fault(Self::wanted()).help(Some(help)))
             }
             _ => Err(node.fault(Self::wanted())),
@@ -67,7 +67,7 @@ impl<T: Read> Read for Vec<T> {
 
 /// The value of `name` in the table `node`.
 pub fn field<T: Read>(node: &DocumentNode, name: &str) -> Result<T, Fault> {
-    match node.children().iter().find(|child| child.name == name) {
+    match node.children().iter().find(|child| child.name() == name) {
         Some(child) => T::read(child),
         None => T::absent(node, name),
     }
@@ -78,7 +78,7 @@ pub fn check_keys(node: &DocumentNode, known: &[&str]) -> Result<(), Fault> {
     let Value::Table(children) = &node.value else {
         return Err(node.fault(format!("a table with the keys {}", known.join(", "))));
     };
-    match children.iter().find(|child| !known.contains(&child.name.as_str())) {
+    match children.iter().find(|child| !known.contains(&child.name())) {
         Some(child) => Err(unknown_key(child, known)),
         None => Ok(()),
     }
@@ -86,14 +86,14 @@ pub fn check_keys(node: &DocumentNode, known: &[&str]) -> Result<(), Fault> {
 
 /// The fault of a key that is not among `known`.
 pub fn unknown_key(child: &DocumentNode, known: &[&str]) -> Fault {
-    let name = child.name.as_str();
+    let name = child.name();
     let help = did_you_mean(name, known.iter().copied()).or_else(|| {
-        let above = super::File::KEYS.contains(&name) && child.key != name;
+        let above = super::File::KEYS.contains(&name) && child.key() != name;
         above.then(|| format!("`{name}` belongs to the top of the file, above the first [table]"))
     });
-    Fault::new(&child.key, format!("unknown key `{name}`"), known.join(", "))
+    Fault::new(&child.key(), format!("unknown key `{name}`"), known.join(", "))
         .help(help)
-        .at(child.name_span.clone())
+        .at(child.name_span())
 }
 
 /// Declares a table of the scene file: its keys are the fields, their documentation is the schema's.
@@ -117,7 +117,7 @@ macro_rules! table {
             }
 
             fn read(
-                node: &$crate::scene::source::DocumentNode,
+                node: &$crate::scene::document_node::DocumentNode,
             ) -> Result<Self, $crate::scene::error::Fault> {
                 $crate::scene::file::read::check_keys(node, Self::KEYS)?;
                 Ok($name { $($field: $crate::scene::file::read::field(node, stringify!($field))?,)* })

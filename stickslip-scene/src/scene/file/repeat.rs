@@ -3,13 +3,14 @@
 use super::Context;
 use super::quantity::{QuantityInput, Ratio};
 use super::read::Read;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Indices that count from 0, each with how many values it has; a later one may depend on those before it.
-pub struct Repeat(Vec<DocumentNode>);
+pub struct Repeat(Arc<[DocumentNode]>);
 
 /// What a table may stand for.
 const MOST: usize = 1_000_000;

@@ -11,8 +11,8 @@ use super::text::Text;
 use super::vector::VectorInput;
 use crate::geometry;
 use crate::scene::Dimension;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::did_you_mean;
 use schemars::JsonSchema;
 
@@ -205,7 +205,7 @@ impl Rotated {
                 return Err(axis.node().fault("no axis, as the scene is plane"));
             }
             (None, _) => {
-                let key = self.angle.node().key.replace("angle", "axis");
+                let key = self.angle.node().key().replace("angle", "axis");
                 return Err(Fault::new(
                     &key,
                     "nothing, the key is missing",
@@ -243,16 +243,14 @@ impl Read for ShapeInput {
         let Value::Table(children) = &node.value else { return Err(node.fault(Self::wanted())) };
         let child = match &children[..] {
             [child] => child,
-            [] => return Err(Fault::new(&node.key, "no shape", Self::wanted())),
+            [] => return Err(Fault::new(&node.key(), "no shape", Self::wanted())),
             [_, second, ..] => {
-                let found = format!("a second shape, `{}`", second.name);
+                let found = format!("a second shape, `{}`", second.name());
                 let help = Some("union = [...] joins shapes".to_string());
-                return Err(Fault::new(&second.key, found, "one shape")
-                    .help(help)
-                    .at(second.name_span.clone()));
+                return Err(Fault::new(&second.key(), found, "one shape").help(help).at(second.name_span()));
             }
         };
-        Ok(match child.name.as_str() {
+        Ok(match child.name() {
             "ball" => ShapeInput::Ball(Ball::read(child)?),
             "box" => ShapeInput::Box(Cuboid::read(child)?),
             "cylinder" => ShapeInput::Cylinder(Cylinder::read(child)?),
@@ -274,8 +272,8 @@ impl Read for ShapeInput {
             "rotated" => ShapeInput::Rotated(Rotated::read(child)?),
             name => {
                 let help = did_you_mean(name, KINDS.iter().copied());
-                let fault = Fault::new(&child.key, format!("unknown shape `{name}`"), KINDS.join(", "));
-                return Err(fault.help(help).at(child.name_span.clone()));
+                let fault = Fault::new(&child.key(), format!("unknown shape `{name}`"), KINDS.join(", "));
+                return Err(fault.help(help).at(child.name_span()));
             }
         })
     }

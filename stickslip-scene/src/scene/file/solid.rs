@@ -6,8 +6,8 @@ use super::read::table;
 use super::vector::VectorInput;
 use crate::geometry::{MOST_EXPONENT, Shape};
 use crate::scene::Dimension;
+use crate::scene::document_node::{DocumentNode, joined};
 use crate::scene::error::Fault;
-use crate::scene::source::{DocumentNode, joined};
 
 table! {
     /// An ellipsoid with axes along those of space; in the plane, an ellipse.
@@ -207,7 +207,7 @@ impl Ring {
 
 /// The path of another key of the table that `node` is in.
 pub(super) fn beside(node: &DocumentNode, key: &str) -> String {
-    joined(node.key.rsplit_once('.').map_or("", |(table, _)| table), key)
+    joined(node.key().rsplit_once('.').map_or("", |(table, _)| table), key)
 }
 
 /// Refuses what has no meaning in the plane.

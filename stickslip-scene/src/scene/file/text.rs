@@ -3,9 +3,9 @@
 use super::Context;
 use super::quantity::{QuantityInput, Ratio};
 use super::read::Read;
+use crate::scene::document_node::{DocumentNode, Value};
 use crate::scene::error::Fault;
 use crate::scene::letters::is_no_letter;
-use crate::scene::source::{DocumentNode, Value};
 use crate::scene::suggestion::{did_you_mean, listed};
 use crate::scene::{NamePattern, is_pattern};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
