@@ -57,7 +57,7 @@ impl Shape {
     /// What a polygon sweeps that is turned around an axis of any length through `center` [m]; its corners are
     /// distances from the axis and places along it from the centre.
     pub fn revolved(points: Vec<[f64; 2]>, center: [f64; 3], axis: [f64; 3]) -> Self {
-        Shape::Revolved(Revolved { points, center, axis })
+        Shape::Revolved(Revolved { points: points.into(), center, axis })
     }
 
     /// A cone between the centres of its ends, with the radius of each, one of which may be 0 [m]; space only.

@@ -1,8 +1,8 @@
 //! How far points are from a shape, and in which direction.
 
+use super::Shape;
 use super::inside::along_and_across;
 use super::rotation::Rotation;
-use super::{Shape, polygon};
 
 /// How far a point is from a surface, and which way leads out fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +98,7 @@ impl Shape {
                 SignedDistance::new((0..dimension).map(|k| (point[k] - on[k]) * gradient[k]).sum(), gradient)
             }
             Shape::Polygon { points, height } => {
-                let (distance, [x, y]) = polygon::distance(points, [point[0], point[1]]);
+                let (distance, [x, y]) = points.distance([point[0], point[1]]);
                 let base = SignedDistance::new(distance, [x, y, 0.0]);
                 if dimension == 2 { base } else { base.square(slab(2, *height, point[2])) }
             }

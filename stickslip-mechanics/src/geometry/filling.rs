@@ -260,7 +260,7 @@ mod tests {
         let ball = Shape::Ball { center: [0.13, 0.21, 0.08], radius: 1.0 };
         let can = Shape::Cylinder { start: [0.0; 3], end: [0.7, 1.1, 0.9], radius: 0.6 };
         let points = vec![[0.0, 0.0], [2.0, 0.3], [1.2, 1.9], [0.9, 0.8]];
-        let prism = Shape::Polygon { points, height: [0.0, 0.7] };
+        let prism = Shape::Polygon { points: points.into(), height: [0.0, 0.7] };
         for shape in [ball, can, prism] {
             let shape = Shape::Rotated {
                 shape: Box::new(shape),

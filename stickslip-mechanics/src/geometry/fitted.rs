@@ -248,7 +248,8 @@ mod tests {
     #[test]
     fn other_shapes_and_cuts_are_not_fitted() {
         let ball = || Shape::Ball { center: [0.0; 3], radius: 1.0 };
-        let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]], height: [0.0, 1.0] };
+        let wedge =
+            Shape::Polygon { points: vec![[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]].into(), height: [0.0, 1.0] };
         let off = cut(ball(), [0.1, 0.0, 0.0], [1.0, 0.0, 0.0]);
         let quarter = cut(cut(ball(), [0.0; 3], [1.0, 0.0, 0.0]), [0.0; 3], [0.0, 1.0, 0.0]);
         for shape in [wedge, off, quarter, Shape::Union(vec![ball(), ball()])] {

@@ -4,8 +4,8 @@
 //! point; a ball and the side of a cylinder are open, so that they keep their symmetry. What is cut out of a shape by
 //! [`Shape::Difference`] is exactly what the cutter would hold.
 
+use super::Shape;
 use super::rotation::Rotation;
-use super::{Shape, polygon};
 
 /// Direction in which a [`NudgedPoint`] is moved: no plane that people draw holds it.
 const NUDGE: [f64; 3] = [1.0, 0.754_877_666_2, 0.569_840_290_9];
@@ -56,7 +56,7 @@ impl Shape {
                 (0..dimension).map(|k| (nudged[k] - on[k]) * normal[k]).sum::<f64>() <= 0.0
             }
             Shape::Polygon { points, height } => {
-                polygon::contains(points, [nudged[0], nudged[1]])
+                points.contains([nudged[0], nudged[1]])
                     && (dimension == 2 || height[0] <= nudged[2] && nudged[2] < height[1])
             }
             Shape::Mesh(mesh) => dimension == 3 && mesh.contains(nudged),
@@ -103,7 +103,7 @@ pub(super) mod tests {
             (point(), prop::array::uniform3(0.1..1.0f64))
                 .prop_map(|(point, normal)| Shape::HalfSpace { point, normal }),
             (prop::collection::vec(prop::array::uniform2(-1.0..1.0f64), 3..7), -1.0..0.0f64)
-                .prop_map(|(points, low)| Shape::Polygon { points, height: [low, low + 1.0] }),
+                .prop_map(|(points, low)| Shape::Polygon { points: points.into(), height: [low, low + 1.0] }),
         ]
     }
 

@@ -115,7 +115,9 @@ fn continued(shape: Shape, mirror: &Mirror, dimension: usize) -> Shape {
             }
             Shape::Polygon { points, height }
         }
-        Shape::Polygon { points, height } => Shape::Polygon { points: drawn_out(&points, mirror), height },
+        Shape::Polygon { points, height } => {
+            Shape::Polygon { points: drawn_out(&points, mirror).into(), height }
+        }
         Shape::Union(shapes) => Shape::Union(all(shapes)),
         Shape::Intersection(shapes) => Shape::Intersection(all(shapes)),
         Shape::Difference(shapes) => Shape::Difference(all(shapes)),
@@ -224,9 +226,10 @@ mod tests {
         }
         let points = vec![[-1.0, 0.0], [1.0, 0.0], [1.0, 2.0], [-1.0, 2.0]];
         let height = [0.0, 0.0];
-        for shape in
-            [Shape::Box { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 0.0] }, Shape::Polygon { points, height }]
-        {
+        for shape in [
+            Shape::Box { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 0.0] },
+            Shape::Polygon { points: points.into(), height },
+        ] {
             let level = MirroredShape::new(&shape, vec![MIRROR], 2).level([0.9, 0.01, 0.0]);
             assert!((level.distance + 0.1).abs() < 1e-12 && level.gradient[0] == 1.0, "{level:?}");
         }

@@ -16,6 +16,7 @@ mod inside;
 mod mesh;
 mod mirrored_shape;
 mod moments;
+mod outline;
 mod polygon;
 mod revolved;
 mod rings;
@@ -39,6 +40,7 @@ pub use image::{
 pub use mesh::{Mesh, MeshFault};
 pub use mirrored_shape::{Mirror, MirroredShape};
 pub use moments::ShapeMoments;
+pub use outline::Outline;
 pub use revolved::Revolved;
 pub use rotation::Rotation;
 pub use round::RoundPart;
@@ -83,7 +85,7 @@ pub enum Shape {
     /// A polygon in the plane of x and y; in three dimensions a prism over it.
     Polygon {
         /// Corners in order [m]; the last joins the first.
-        points: Vec<[f64; 2]>,
+        points: Outline,
         /// Lower and upper z of the prism [m]; not used in the plane.
         height: [f64; 2],
     },

@@ -7,7 +7,7 @@ fn edges(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
 
 /// Each edge with its outward unit normal; an edge without length has none to speak of.
 pub(super) fn sides(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2], [f64; 2])> {
-    let turn = if signed_area(points) < 0.0 { -1.0 } else { 1.0 };
+    let turn = if is_clockwise(points) { -1.0 } else { 1.0 };
     edges(points).map(move |(a, b)| {
         let [x, y] = [b[0] - a[0], b[1] - a[1]];
         let length = turn * x.hypot(y);
@@ -22,31 +22,49 @@ pub(super) fn sides(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64
 pub(super) fn contains(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
     for (a, b) in edges(points) {
-        if (a[1] > y) != (b[1] > y) {
-            let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
-            let crossing = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
-            inside ^= x < crossing;
-        }
+        inside ^= crosses(a, b, [x, y]);
     }
     inside
+}
+
+/// Whether a ray to the right of a point crosses an edge.
+pub(super) fn crosses(a: [f64; 2], b: [f64; 2], [x, y]: [f64; 2]) -> bool {
+    if (a[1] > y) == (b[1] > y) {
+        return false;
+    }
+    let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
+    let crossing = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+    x < crossing
 }
 
 /// Points this near an edge, over its length, are on it: their way to the edge is round-off.
 const ON_BORDER: f64 = 1e-9;
 
-/// Distance to the border [m], negative inside, and its gradient.
-pub(super) fn distance(points: &[[f64; 2]], point: [f64; 2]) -> (f64, [f64; 2]) {
-    distance_to_some(points, point, |_, _| true)
+/// The edge that is nearest to a point, of those that were looked at: the first one of equals.
+pub(super) struct Nearest {
+    point: [f64; 2],
+    square: f64,
+    arm: [f64; 2],
+    edge: [f64; 2],
+    number: usize,
 }
 
-/// As [`distance`], to those edges of the border that count.
-pub(super) fn distance_to_some(
-    points: &[[f64; 2]],
-    [x, y]: [f64; 2],
-    counts: impl Fn([f64; 2], [f64; 2]) -> bool,
-) -> (f64, [f64; 2]) {
-    let (mut nearest, mut arm, mut along_edge) = (f64::INFINITY, [0.0; 2], [0.0; 2]);
-    for (a, b) in edges(points).filter(|&(a, b)| counts(a, b)) {
+impl Nearest {
+    pub fn new(point: [f64; 2]) -> Nearest {
+        Nearest { point, square: f64::INFINITY, arm: [0.0; 2], edge: [0.0; 2], number: 0 }
+    }
+
+    pub fn point(&self) -> [f64; 2] {
+        self.point
+    }
+
+    /// Distance to the nearest edge [m].
+    pub fn distance(&self) -> f64 {
+        self.square.sqrt()
+    }
+
+    pub fn look_at(&mut self, (number, a, b): (usize, [f64; 2], [f64; 2])) {
+        let [x, y] = self.point;
         let (edge, from) = ([b[0] - a[0], b[1] - a[1]], [x - a[0], y - a[1]]);
         let squared = edge[0] * edge[0] + edge[1] * edge[1];
         let along = if squared > 0.0 {
@@ -54,23 +72,45 @@ pub(super) fn distance_to_some(
         } else {
             0.0
         };
-        let off = [from[0] - along * edge[0], from[1] - along * edge[1]];
-        let square = off[0] * off[0] + off[1] * off[1];
-        if square < nearest {
-            (nearest, arm, along_edge) = (square, off, edge);
+        let arm = [from[0] - along * edge[0], from[1] - along * edge[1]];
+        let square = arm[0] * arm[0] + arm[1] * arm[1];
+        if square < self.square || square == self.square && number < self.number {
+            *self = Nearest { square, arm, edge, number, ..*self };
         }
     }
-    let nearest = nearest.sqrt();
-    let sign = if contains(points, [x, y]) { -1.0 } else { 1.0 };
-    let edge = along_edge[0].hypot(along_edge[1]);
-    let gradient = if nearest > ON_BORDER * edge {
-        arm.map(|a| sign * a / nearest)
-    } else {
-        // The edge's normal, out of a polygon that goes round anticlockwise.
-        let turn = if signed_area(points) < 0.0 { -1.0 } else { 1.0 } / edge;
-        [along_edge[1] * turn, -along_edge[0] * turn]
-    };
-    (sign * nearest, gradient)
+
+    /// Distance to the border [m], negative inside, and its gradient, of a polygon that goes round `anticlockwise`.
+    pub fn signed_distance(&self, inside: bool, anticlockwise: impl FnOnce() -> bool) -> (f64, [f64; 2]) {
+        let Nearest { arm, edge, .. } = *self;
+        let (nearest, length) = (self.distance(), edge[0].hypot(edge[1]));
+        let sign = if inside { -1.0 } else { 1.0 };
+        let gradient = if nearest > ON_BORDER * length {
+            arm.map(|a| sign * a / nearest)
+        } else {
+            // The edge's normal, out of the polygon.
+            let turn = if anticlockwise() { 1.0 } else { -1.0 } / length;
+            [edge[1] * turn, -edge[0] * turn]
+        };
+        (sign * nearest, gradient)
+    }
+}
+
+/// Distance to the border [m], negative inside, and its gradient: to those edges of the border that count.
+pub(super) fn distance_to_some(
+    points: &[[f64; 2]],
+    point: [f64; 2],
+    counts: impl Fn([f64; 2], [f64; 2]) -> bool,
+) -> (f64, [f64; 2]) {
+    let mut nearest = Nearest::new(point);
+    for (number, (a, b)) in edges(points).enumerate().filter(|&(_, (a, b))| counts(a, b)) {
+        nearest.look_at((number, a, b));
+    }
+    nearest.signed_distance(contains(points, point), || !is_clockwise(points))
+}
+
+/// Whether the corners go round clockwise.
+pub(super) fn is_clockwise(points: &[[f64; 2]]) -> bool {
+    signed_area(points) < 0.0
 }
 
 /// Area [m^2] of a polygon that does not cross itself, whichever way round its corners go.
@@ -89,6 +129,10 @@ fn signed_area(points: &[[f64; 2]]) -> f64 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    fn distance(points: &[[f64; 2]], point: [f64; 2]) -> (f64, [f64; 2]) {
+        distance_to_some(points, point, |_, _| true)
+    }
 
     const L: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
 

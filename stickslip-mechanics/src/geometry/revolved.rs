@@ -3,7 +3,7 @@
 use super::distance::SignedDistance;
 use super::mirrored_shape::{Mirror, drawn_out, on};
 use super::surface::{frame, middles, turn};
-use super::{Bounds, SurfacePoint, polygon};
+use super::{Bounds, Outline, SurfacePoint, polygon};
 use crate::tensor::Vector;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Revolved {
     /// Corners in order: distance from the axis, not negative, and place along it from the centre [m].
-    pub points: Vec<[f64; 2]>,
+    pub points: Outline,
     /// A point on the axis [m].
     pub center: [f64; 3],
     /// Axis, any length [-].
@@ -47,12 +47,12 @@ impl Revolved {
     pub(super) fn contains(&self, point: [f64; 3], nudged: [f64; 3], margin: f64) -> bool {
         let ([rho, _], _) = self.profile(point);
         let ([_, along], _) = self.profile(nudged);
-        polygon::contains(&self.points, [rho + margin, along])
+        self.points.contains([rho + margin, along])
     }
 
     pub(super) fn level(&self, point: [f64; 3]) -> SignedDistance {
         let ([rho, along], across) = self.profile(point);
-        let (distance, [out, up]) = polygon::distance_to_some(&self.points, [rho, along], sweeps);
+        let (distance, [out, up]) = self.points.distance_to_some([rho, along], sweeps);
         // On the axis no direction off it stands out.
         let off = if rho > 0.0 { across * (out / rho) } else { Vector([0.0; 3]) };
         let gradient = off + self.direction() * up;
@@ -110,7 +110,7 @@ impl Revolved {
         let axis = self.direction();
         let [first, second] = frame(axis.0).map(Vector);
         let mut points = Vec::new();
-        for &[rho, z] in &self.points {
+        for &[rho, z] in self.points.iter() {
             for i in 0..if rho > 0.0 { count } else { 1 } {
                 let angle = TAU * i as f64 / count as f64;
                 let off = first * libm::cos(angle) + second * libm::sin(angle);
@@ -137,7 +137,7 @@ impl Revolved {
         }
         let position = (mirror.position - self.center[mirror.axis]) * along;
         let across = Mirror { axis: 1, position, inward: mirror.inward * along.signum() };
-        Revolved { points: drawn_out(&self.points, &across), ..self }
+        Revolved { points: drawn_out(&self.points, &across).into(), ..self }
     }
 
     /// What is wrong with it: the key, what was found and what is allowed.

@@ -356,7 +356,7 @@ mod tests {
     fn surfaces_are_closed_and_hold_the_shapes_volume() {
         let can = Shape::Cylinder { start: [0.0; 3], end: [0.7, 0.4, 0.9], radius: 0.5 };
         let corners = vec![[0.0, 0.0], [1.0, 0.1], [0.5, 0.4], [0.3, 1.0]];
-        let prism = Shape::Polygon { points: corners, height: [0.1, 0.8] };
+        let prism = Shape::Polygon { points: corners.into(), height: [0.1, 0.8] };
         let ring = Shape::Difference(vec![ball(), Shape::Ball { center: [0.3, -0.2, 0.1], radius: 0.4 }]);
         let turned = Shape::Rotated {
             shape: Box::new(block()),

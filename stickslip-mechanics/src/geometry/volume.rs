@@ -40,7 +40,8 @@ mod tests {
     fn simple_solids_have_their_textbook_volumes() {
         let can = Shape::Cylinder { start: [1.0; 3], end: [1.0, 1.0, 4.0], radius: 2.0 };
         assert_eq!((can.volume(3), can.volume(2)), (Some(12.0 * PI), None));
-        let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]], height: [1.0, 1.5] };
+        let wedge =
+            Shape::Polygon { points: vec![[0.0, 0.0], [0.0, 3.0], [4.0, 0.0]].into(), height: [1.0, 1.5] };
         assert_eq!((wedge.volume(2), wedge.volume(3)), (Some(6.0), Some(3.0)));
         let slab = Shape::Box { min: [0.0; 3], max: [2.0, 3.0, 5.0] };
         let turned = Shape::Rotated { shape: Box::new(slab), center: [0.0; 3], axis: [1.0; 3], angle: 1.0 };

@@ -157,7 +157,8 @@ mod tests {
         assert_eq!(key_of(space, floor([0.0; 3])), "bodies[0].shape.half_space.normal");
         let cube = Shape::Box { min: [0.0; 3], max: [1.0, 1.0, 0.0] };
         assert_eq!(key_of(space, cube), "bodies[0].shape.box.max");
-        let line = Shape::Polygon { points: vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]], height: [0.0, 1.0] };
+        let line =
+            Shape::Polygon { points: vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]].into(), height: [0.0, 1.0] };
         assert_eq!(key_of(space, line), "bodies[0].shape.polygon.points");
     }
 

@@ -115,10 +115,11 @@ fn the_same_seed_gives_the_same_packing_for_any_number_of_threads() {
 
 #[test]
 fn grains_of_any_shape_keep_apart_and_inside() {
-    let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]], height: [0.0, 0.04] };
+    let wedge =
+        Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]].into(), height: [0.0, 0.04] };
     let can = Shape::Cylinder { start: [0.0; 3], end: [0.0, 0.0, 0.06], radius: 0.02 };
     let funnel = Shape::Polygon {
-        points: vec![[-0.2, 0.3], [0.2, 0.3], [0.1, -0.1], [-0.1, -0.1]],
+        points: vec![[-0.2, 0.3], [0.2, 0.3], [0.1, -0.1], [-0.1, -0.1]].into(),
         height: [0.0, 0.2],
     };
     let cases = [
@@ -330,7 +331,8 @@ fn settled_grains_rest_as_dense_as_random_packings_are() {
 /// below. Of twenty one may not seem so: a short way down hardly finds what steep sides hold.
 #[test]
 fn grains_of_other_shapes_settle() {
-    let wedge = Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]], height: [0.0, 0.04] };
+    let wedge =
+        Shape::Polygon { points: vec![[0.0, 0.0], [0.06, 0.0], [0.0, 0.05]].into(), height: [0.0, 0.04] };
     let can = Shape::Cylinder { start: [0.0; 3], end: [0.0, 0.0, 0.06], radius: 0.02 };
     let cases = [
         (Shape::rectangle([0.0; 2], [0.04, 0.04]), 20, 2),

@@ -126,7 +126,7 @@ mod tests {
         #[test]
         fn inside_is_behind_all_walls(point in prop::array::uniform3(-1.5..1.5f64), angle in 0.0..6.0f64) {
             let cube = Shape::cuboid([-1.0, -0.8, -0.5], [0.9, 1.0, 0.7]);
-            let funnel = |points: Vec<[f64; 2]>| Shape::Polygon { points, height: [-0.6, 0.6] };
+            let funnel = |points: Vec<[f64; 2]>| Shape::Polygon { points: points.into(), height: [-0.6, 0.6] };
             let convex = funnel(vec![[-1.0, 1.0], [1.0, 1.0], [0.2, -1.0], [-0.2, -1.0]]);
             let hollow = funnel(vec![[-1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.2, -1.0], [-0.2, -1.0]]);
             let can = Shape::Cylinder { start: [0.0, 0.0, -0.6], end: [0.1, 0.0, 0.7], radius: 0.8 };

@@ -20,7 +20,7 @@ impl Mesh {
         for border in self.borders(height) {
             if twice_area(&border) > 0.0 { areas.push(border) } else { holes.push(border) }
         }
-        let polygon = |points| Shape::Polygon { points, height: [0.0; 2] };
+        let polygon = |points: Vec<_>| Shape::Polygon { points: points.into(), height: [0.0; 2] };
         let mut parts: Vec<Vec<Shape>> = areas.iter().map(|area| vec![polygon(area.clone())]).collect();
         for hole in holes {
             // Of areas in each other, as of a ring in a ring, the smallest around it.

@@ -58,7 +58,7 @@ impl Polygon {
     /// The shape in SI units.
     pub fn resolve(&self, context: &Context) -> Result<Shape, Fault> {
         let points = self.points.value(context)?;
-        Ok(Shape::Polygon { points, height: height(&self.height, &self.points.1, context)? })
+        Ok(Shape::Polygon { points: points.into(), height: height(&self.height, &self.points.1, context)? })
     }
 }
 
@@ -67,7 +67,7 @@ impl Spline {
     pub fn resolve(&self, context: &Context) -> Result<Shape, Fault> {
         let points = self.points.apart(context)?;
         let height = height(&self.height, &self.points.1, context)?;
-        Ok(Shape::Polygon { points: spline::closed(&points), height })
+        Ok(Shape::Polygon { points: spline::closed(&points).into(), height })
     }
 }
 
