@@ -36,6 +36,27 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// A particle as others see it.
+/// A body of prescribed motion as it moves at `time`, where its particles have the mean over the last step. It turns
+/// about an axis that stays, so its inertia is the same.
+fn as_prescribed(state: BodyState, motion: &RigidMotion, time: f64) -> BodyState {
+    let (was, turned) = (motion.velocity(), motion.spin());
+    let [velocity, spin] = motion.velocities_at(time);
+    if [velocity, spin] == [was, turned] {
+        return state;
+    }
+    let faster = if turned == [0.0; 3] { 1.0 } else { dot(spin, turned) / dot(turned, turned) };
+    let orbit = |v: [f64; 3]| cross(state.position, v.map(|v| state.mass * v));
+    let (before, after) = (orbit(was), orbit(velocity));
+    let whole = |v: [f64; 3]| 0.5 * state.mass * dot(v, v);
+    BodyState {
+        velocity,
+        spin,
+        angular_momentum: [0, 1, 2].map(|k| after[k] + faster * (state.angular_momentum[k] - before[k])),
+        kinetic: whole(velocity) + faster * faster * (state.kinetic - whole(was)),
+        ..state
+    }
+}
+
 fn shown<T: Real, const D: usize>(particle: &Particle<T, D>) -> ParticleView {
     ParticleView {
         number: particle.number,
@@ -200,11 +221,12 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
         (self.state.bodies.iter().enumerate())
             .map(|(i, body)| {
                 if let Some(motion) = self.without_bounds(i) {
+                    let [velocity, spin] = motion.velocities_at(self.state.time);
                     return BodyState {
                         mass: 0.0,
                         position: motion.center,
-                        velocity: motion.velocity(),
-                        spin: motion.spin(),
+                        velocity,
+                        spin,
                         angular_momentum: [0.0; 3],
                         kinetic: 0.0,
                         strain: 0.0,
@@ -232,7 +254,7 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
                     None => body.spin(self.kernels, totals),
                 };
                 let spin = by_nodes.unwrap_or(spin);
-                BodyState {
+                let over_step = BodyState {
                     mass: totals.mass,
                     position: totals.first_moment.map(|x| x / totals.mass),
                     velocity: totals.momentum.map(|p| p / totals.mass),
@@ -240,7 +262,10 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
                     angular_momentum: totals.angular_momentum,
                     kinetic: totals.kinetic,
                     strain: totals.strain,
-                }
+                };
+                let prescribed = body.motion.as_deref();
+                prescribed
+                    .map_or(over_step.clone(), |motion| as_prescribed(over_step, motion, self.state.time))
             })
             .collect()
     }

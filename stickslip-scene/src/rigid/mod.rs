@@ -128,6 +128,18 @@ impl RigidMotion {
         Ok(())
     }
 
+    /// The velocity of the centre and the angular velocity that are prescribed at time `t` [s]; in a step the body has
+    /// their means. What comes from outside is not asked for more than steps need: of it, and of a free body, those of
+    /// the last step.
+    pub fn velocities_at(&self, t: f64) -> [[f64; 3]; 2] {
+        let of_step = [self.now, self.turning];
+        let Drive::Prescribed { velocity, spin } = &self.drive else { return of_step };
+        let at_time = |of: &[Expression; 3]| OutsideValue::vector(of, t).ok();
+        let is_known = velocity.iter().chain(spin.iter()).all(|part| part.outside().is_none());
+        let now = if is_known { at_time(velocity).zip(at_time(spin)) } else { None };
+        now.map_or(of_step, |(velocity, spin)| [velocity, spin])
+    }
+
     /// How far a step of `dt` from `time` on takes the centre of a body whose motion a formula or a table prescribes
     /// [m].
     pub fn prescribed_way(&self, time: f64, dt: f64) -> f64 {
