@@ -4,9 +4,10 @@ use super::bodies::FillingExtent;
 use super::neighbours::pairs_within;
 use super::penetration::{SharedRoom, deepest};
 use super::periodic::Images;
+use super::rules::CountedRules;
 use super::warning::Warning;
 use crate::geometry::{Bounds, SiteLattice};
-use crate::scene::{Body, ContactLaw, Interior, Problem, Scene};
+use crate::scene::{Body, ContactLaw, ContactRule, Interior, Problem, Scene};
 use rayon::prelude::*;
 
 /// A particle this share of the spacing inside a body is inside beyond round-off; touching bodies stay allowed.
@@ -23,12 +24,18 @@ pub(super) fn check(scene: &Scene, extents: &[FillingExtent]) -> Result<(), Prob
     let pairs = pairs_within(&boxes, 0.0);
     let pairs_joined = scene.joined_pairs();
     let joined = |[a, b]: [usize; 2]| pairs_joined.contains(&[a, images.of[b]]);
-    let pressed = |[a, b]: [usize; 2]| scene.contact_between(a, images.of[b]).press.is_some();
+    let pressed = |[a, b]: [usize; 2]| presses(scene, [a, images.of[b]]);
     let counts = |pair: [usize; 2]| images.counts(pair) && !joined(pair) && !pressed(pair);
     match pairs.par_iter().find_map_first(|&pair| shared(&images, &boxes, pair).filter(|_| counts(pair))) {
         Some(problem) => Err(problem),
         None => Ok(()),
     }
+}
+
+/// Whether contact presses two bodies apart that overlap: it cannot where both are rigid.
+pub(super) fn presses(scene: &Scene, [a, b]: [usize; 2]) -> bool {
+    let deforms = [a, b].iter().any(|&body| !scene.bodies[body].is_rigid());
+    deforms && scene.contact_between(a, b).press.is_some()
 }
 
 /// Bodies that overlap by less than this touch [cells].
@@ -99,26 +106,28 @@ pub(super) fn inside(scene: &Scene) -> Bounds {
 /// Bodies that overlap and are not pressed apart, and rules that press where nothing overlaps.
 pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     let found = overlaps(scene);
-    let presses = |overlap: &&Overlap| {
-        let rule = scene.contact_between(overlap.bodies[0], overlap.of);
-        rule.press.is_some()
-    };
+    // Rules of rigid bodies alone are told of with their other keys.
+    let rules = CountedRules::new(scene);
+    let presses_something =
+        |number: usize, rule: &ContactRule| rule.press.is_some() && !rules.is_of_rigid_bodies(number);
     let idle = scene.contact.iter().enumerate().filter(|(number, rule)| {
         let holds =
             |overlap: &Overlap| scene.contact_rule_between(overlap.bodies[0], overlap.of) == Some(*number);
-        rule.press.is_some() && scene.start.is_none() && !found.iter().any(holds)
+        presses_something(*number, rule) && scene.start.is_none() && !found.iter().any(holds)
     });
     let idle = idle.map(|(number, _)| {
         let why = "presses nothing: none of its bodies overlap at the start";
         Warning::about(format!("contact[{number}].overlap"), why)
     });
     let mut all: Vec<Warning> = idle.collect();
-    if scene.start.is_some() && scene.contact.iter().any(|rule| rule.press.is_some()) {
-        let number = scene.contact.iter().position(|rule| rule.press.is_some()).unwrap_or(0);
+    let mut pressing =
+        scene.contact.iter().enumerate().filter(|(number, rule)| presses_something(*number, rule));
+    if let Some((number, _)) = pressing.next().filter(|_| scene.start.is_some()) {
         let why = "does not act: the bodies begin as another run left them";
         all.push(Warning::about(format!("contact[{number}].overlap"), why));
     }
-    let kept: Vec<&Overlap> = found.iter().filter(|overlap| !presses(overlap)).collect();
+    let kept: Vec<&Overlap> =
+        found.iter().filter(|overlap| !presses(scene, [overlap.bodies[0], overlap.of])).collect();
     let deepest = kept.iter().max_by(|x, y| x.room.depth.total_cmp(&y.room.depth));
     all.extend(deepest.map(|deepest| kept_overlap(scene, deepest, kept.len() - 1)));
     all
@@ -282,6 +291,39 @@ mod tests {
         three.truncate(3);
         let text = warned(Dimension::PlaneStrain, three).expect("overlap");
         assert!(text.contains(", and 1 more pair by less"), "{text}");
+    }
+
+    /// Rigid bodies are not pressed apart: that is told once, with the other keys of their rule, and they overlap as
+    /// without it.
+    #[test]
+    fn rigid_bodies_overlap_whether_or_not_a_rule_presses() {
+        let disk = |name: &str, x: f64| {
+            format!(
+                "[[bodies]]\nname = '{name}'\nmaterial = 'm'\nrigid.free = {{}}\n\
+                 shape.ball = {{ center = [{x}, 0], radius = 0.5 }}\n"
+            )
+        };
+        let scene = |apart: f64| {
+            let text = format!(
+                "space = {{ dimension = 'plane-strain', cell = 0.1 }}\ntime.end = 1\ncontact = [{{ overlap = 'press' }}]\n\
+                 materials.m = {{ density = 1, neo_hookean = {{ young_modulus = 9, poisson_ratio = 0 }} }}\n{}{}",
+                disk("a", 0.0),
+                disk("b", apart)
+            );
+            crate::scene::parse("rigid.toml", &text, &[]).expect("a scene").scene
+        };
+        let told = |apart: f64| {
+            let report = crate::check::tests::report(&scene(apart)).expect("no problem");
+            report.warnings.iter().map(|warning| warning.to_string()).collect::<Vec<_>>()
+        };
+        let dead = "contact[0].overlap: does not act: the rule matches rigid bodies only";
+        let [idle] = &told(1.0)[..] else { panic!("one line: {:?}", told(1.0)) };
+        assert!(idle.starts_with(dead), "{idle}");
+        let [idle, overlap] = &told(0.999)[..] else { panic!("two lines: {:?}", told(0.999)) };
+        assert!(idle.starts_with(dead) && overlap.contains("they part slowly"), "{idle}\n{overlap}");
+        // A third of a cell: refused as without the rule.
+        let deep = scene(0.6);
+        assert!(check(&deep, &measure(&deep).expect("filled")).is_err());
     }
 
     #[test]

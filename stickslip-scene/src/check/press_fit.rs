@@ -1,6 +1,6 @@
 //! Interference fits: bodies that overlap at the start and are pressed apart.
 
-use super::overlap::{Overlap, inside, overlaps};
+use super::overlap::{Overlap, inside, overlaps, presses};
 use crate::scene::{Problem, Scene};
 
 /// An interference fit: how much surfaces grow, and within which time.
@@ -28,7 +28,7 @@ pub fn interferences(scene: &Scene) -> Vec<Option<Interference>> {
     let mut found = vec![None; scene.contact.len()];
     for Overlap { bodies: [a, _], of, room, .. } in overlaps(scene) {
         let Some(rule) = scene.contact_rule_between(a, of) else { continue };
-        let Some(press) = scene.contact[rule].press else { continue };
+        let Some(press) = scene.contact[rule].press.filter(|_| presses(scene, [a, of])) else { continue };
         let time = press.time.unwrap_or(CROSSINGS * crossing(a).max(crossing(of)));
         let before = found[rule].unwrap_or(Interference { depth: 0.0, time: 0.0 });
         found[rule] = Some(Interference { depth: before.depth.max(room.depth), time: before.time.max(time) });
