@@ -3,8 +3,8 @@
 use super::rules::CountedRules;
 use super::warning::Warning;
 use crate::scene::{
-    BasisKind, Body, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior, JointKind, Motor,
-    Normal, Scene,
+    BasisKind, Body, Changes, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior, JointKind,
+    Motor, Normal, Scene,
 };
 
 /// What a scene says and nothing comes of, a line for each kind.
@@ -16,6 +16,7 @@ pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
         .chain(rigid_interiors(scene))
         .chain(overruled_drift(scene))
         .chain(overruled_motor(scene))
+        .chain(late_tables(scene))
 }
 
 /// Of rules between rigid bodies alone, keys that are about nodes: these bodies touch without a grid.
@@ -128,6 +129,21 @@ fn overruled_motor(scene: &Scene) -> Option<Warning> {
     scene.joints.iter().enumerate().find_map(overruled)
 }
 
+/// Tables of time of which a run sees the first value alone.
+fn late_tables(scene: &Scene) -> Option<Warning> {
+    let (changes, end) = (Changes::of(scene), scene.time.end);
+    let mut late = changes.tables_not_begun(end);
+    let (change, first) = late.next()?;
+    let others = match late.count() {
+        0 => String::new(),
+        others => format!("; so it is with {others} more"),
+    };
+    let why = format!(
+        "the table begins at {first} s, not before the end of the run, {end} s: its first value holds all the time{others}"
+    );
+    Some(Warning::about(change.key.clone(), why))
+}
+
 /// The first key of a motor beside its speed that pushes.
 pub(super) fn first_key(motor: &Motor, push: &'static str) -> Option<&'static str> {
     let pushes = motor.push != Expression::Constant(0.0);
@@ -195,6 +211,20 @@ mod tests {
                 "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3 } }]",
                 "joints[0].hinge.dashpot: does not act: the motor of `joint 1` keeps up",
             ),
+            (
+                "loads = [{ body = 'a', force = [{ table = [[2, 0], [3, 5]] }, 0] }]",
+                "loads[0].force: the table begins at 2 s, not before the end of the run, 1 s: its first value holds all \
+                 the time",
+            ),
+            (
+                "gravity = [{ table = [[1, 0], [3, 5]] }, { table = [[4, 0], [5, 5]] }]",
+                "gravity: the table begins at 1 s, not before the end of the run, 1 s: its first value holds all the \
+                 time; so it is with 1 more",
+            ),
+            (
+                "contact = [{ overlap = 'press' }]",
+                "contact[0].overlap: does not act: the rule matches rigid bodies only",
+            ),
         ] {
             let found = told(rest);
             assert!(found.len() == 1 && found[0].starts_with(said), "{rest}: {found:?}");
@@ -205,6 +235,8 @@ mod tests {
             "time = { end = 1, energy_drift = 0.2 }\nhealth.energy.bound = 0.3",
             "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3, limit = 2 } }]",
             "gravity = [0, -9.81]",
+            // A table that the end cuts short acts, and so does one of one row.
+            "gravity = [{ table = [[0.99, 0], [3, 5]] }, { table = [[4, 1]] }]",
         ] {
             assert_eq!(told(rest), [""; 0], "{rest}");
         }

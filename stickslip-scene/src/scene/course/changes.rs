@@ -109,6 +109,16 @@ impl Changes {
         Changes(found.all)
     }
 
+    /// Tables whose second row is not before `end` [s], each with the time of its first: of these a run sees the first
+    /// value alone.
+    pub fn tables_not_begun(&self, end: f64) -> impl Iterator<Item = (&Change, f64)> {
+        self.0.iter().filter_map(move |change| {
+            let Expression::Table(table) = &change.value else { return None };
+            let first = table.rows()[0][0];
+            (first >= end).then_some((change, first))
+        })
+    }
+
     /// The length of a step from `time` on that would take `longest` [s].
     pub fn step(&self, time: f64, longest: f64) -> f64 {
         let next =
