@@ -155,10 +155,29 @@ fn laws_of_other_programs_have_an_answer() {
         ("JC", "here: `johnson_cook`, with yield_stress = A"),
         ("mooney", "here: `mooney_rivlin`, with c10"),
         ("elastic", "here: `hypoelastic`, Hooke's law"),
+        ("jh2", "here: none that tension cracks and pressure crushes"),
+        ("hoek_brown", "here: `mohr_coulomb`, with friction_angle"),
+        ("creep", "here: `johnson_cook` hardens by its rate"),
+        ("MAT_DRUCKER_PRAGER", "did you mean `drucker_prager`?"),
     ] {
         let text = edited(MINIMAL, law, &format!("{other} = {{ young_modulus = 1e6 }}"));
         let error = scene::parse("a.toml", &text, &[]).expect_err("no law of ours").to_string();
         assert!(error.contains(&format!("found unknown key `{other}`; allowed: density, ")), "{error}");
         assert!(error.contains(&format!("; {answer}")), "{error}");
+    }
+}
+
+/// Johnson and Cook (1983) eq. (1) has A, B, n, C and m.
+#[test]
+fn constants_of_papers_are_told_their_keys() {
+    let law = MINIMAL.lines().find(|line| line.starts_with("neo_hookean")).expect("a law");
+    for (letter, key) in [("A", "yield_stress"), ("B", "hardening_modulus"), ("C", "rate_coefficient")] {
+        let text = edited(MINIMAL, law, &format!("johnson_cook = {{ young_modulus = 1e6, {letter} = 1e6 }}"));
+        let error = scene::parse("a.toml", &text, &[]).expect_err("a letter is no key").to_string();
+        assert!(
+            error.contains(&format!("johnson_cook.{letter}: found unknown key `{letter}`; allowed: ")),
+            "{error}"
+        );
+        assert!(error.ends_with(&format!("; did you mean `{key}`?")), "{error}");
     }
 }

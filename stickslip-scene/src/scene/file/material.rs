@@ -3,7 +3,7 @@
 use super::quantity::{Angle, Density, Measure, QuantityInput, Ratio, evaluate};
 use super::read::{Read, check_keys, field, unknown_key};
 use super::text::{Choice, Text, Word};
-use super::{Context, other_laws};
+use super::{Context, other_constants, other_laws};
 use crate::material::{
     ANGLE, Constant, Form, Given, LAWS, Material, OUTSIDE_CONSTANTS, Quantity as Wanted, outside_law,
 };
@@ -51,7 +51,7 @@ fn material(node: &DocumentNode, context: &Context) -> Result<NamedMaterial, Fau
     if let Some((child, answer)) =
         node.children().iter().find(other).and_then(|child| Some((child, other_laws::answer(child.name())?)))
     {
-        return Err(unknown_key(child, &keys).help(Some(answer.to_string())));
+        return Err(unknown_key(child, &keys).help(Some(answer)));
     }
     check_keys(node, &keys)?;
     let density = field::<QuantityInput<Density>>(node, "density")?.positive(context)?;
@@ -125,7 +125,7 @@ fn constants(
     let mut given = Given::default();
     for child in children.iter().filter(|child| other != Some(child.name())) {
         let constant = declared.iter().find(|constant| constant.name == child.name());
-        let constant = constant.ok_or_else(|| unknown_key(child, &names))?;
+        let constant = constant.ok_or_else(|| unknown_constant(child, &names))?;
         let values = match constant.form {
             Form::Number(wanted) => vec![number(child, &wanted, context)?],
             Form::Pairs(wanted, _) => pairs(child, (constant, &wanted), context)?,
@@ -134,6 +134,15 @@ fn constants(
         given.put(child.name().to_string(), values);
     }
     Ok(given)
+}
+
+/// The fault of a key that is no constant of a law.
+fn unknown_constant(child: &DocumentNode, known: &[&str]) -> Fault {
+    let fault = unknown_key(child, known);
+    match other_constants::meant(child.name(), known) {
+        Some(meant) => fault.help(Some(format!("did you mean `{meant}`?"))),
+        None => fault,
+    }
 }
 
 /// Angles are numbers by their dimension, but are written with a unit.

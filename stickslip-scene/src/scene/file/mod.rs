@@ -17,6 +17,7 @@ mod measurements;
 mod mesh;
 mod named_shapes;
 mod obj;
+mod other_constants;
 mod other_laws;
 mod outline;
 mod outputs;
