@@ -47,7 +47,7 @@ pub fn meant<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
         1 => *elsewhere == name,
         _ => elsewhere.eq_ignore_ascii_case(name),
     };
-    let mut keys = ELSEWHERE.iter().filter(|(_, names)| names.iter().any(|elsewhere| is_it(&elsewhere)));
+    let mut keys = ELSEWHERE.iter().filter(|(_, names)| names.iter().any(is_it));
     keys.find_map(|(key, _)| known.iter().copied().find(|known| known == key))
 }
 

@@ -53,6 +53,8 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
             "reducedpolynomial",
             "murnaghan",
             "mullins",
+            "blatzko",
+            "hyperfoam",
         ],
         "here: `mooney_rivlin`, with c10, c01 and bulk_modulus, or `ogden`, with pairs of modulus and exponent; another \
          one is a law of your own in Python, chapter 15",
@@ -311,7 +313,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     ),
     (
         &["superelastic", "superelasticity", "shapememory", "nitinol", "phasetransition", "bistable"],
-        "here: none; a law of your own in Python, chapter 15, remembers what it needs",
+        "here: none; it would be a law of your own in Python, chapter 15",
     ),
     (
         &["linearelasticpml", "pml"],
