@@ -2,7 +2,7 @@
 
 use super::among::{Find, Kinds, Look, SharedOut, Walked, share_out, walk, walk_together};
 use super::mechanism::{JointSums, RigidSurfaces};
-use super::reference::{ReferenceBody, References, is_reference, lengths};
+use super::reference::{CommonPartner, ReferenceBody, References, is_reference, lengths};
 use super::relax::RelaxationProgress;
 use super::state::{Settings, State, Workspace};
 use super::together::over_arrays;
@@ -305,6 +305,8 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
             (all_that(&|body| body.is_rigid()), all_that(&|body| over_arrays(body).is_some()));
         let averages_volume = bodies.iter().any(|body| body.averages_volume());
         let loads = loads(scene, (&bodies, &all_filled), kinds.is_some());
+        let rules = Rules::new(scene);
+        let common = CommonPartner::of_scene::<D>(scene, &rules);
         Ok(Engine {
             settings: Settings {
                 lattice: Lattice {
@@ -323,7 +325,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 walls: walls::<D>(scene),
                 damping: NodeDamping::new(&scene.damping),
                 viscosity: BulkViscosity::new(scene.damping.bulk),
-                rules: Rules::new(scene),
+                rules,
                 loads,
                 joints: scene.joints.clone(),
                 springs: scene.springs.iter().map(|spring| SpringPoints::new(scene, spring)).collect(),
@@ -331,6 +333,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 free: free_bodies(scene),
                 rigid,
                 references,
+                common,
                 lengths: lengths(scene),
                 tables,
                 together,

@@ -111,7 +111,6 @@ pub struct Engine<T: 'static, const D: usize> {
 impl<T: Laned, const D: usize> Engine<T, D> {
     /// One step of `dt`.
     fn advance(&mut self, dt: T) -> Result<(), StepError> {
-        self.push_references(dt)?; //                             bodies on grids of their own: v += dt (f / m + g)
         match self.settings.time.stress_update {
             StressUpdate::First => self.update_stress_first(dt),
             StressUpdate::Last => self.update_stress_last(dt),
@@ -136,6 +135,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.update_stress(dt)?; //                               G2P: F = (I + L dt) F, sigma = law(F); P2G: f
         self.keep_velocities(); //                                v~ moves the particles, too
         self.release_supported_nodes(); //                        v as it was
+        self.push_references(dt)?; //                             bodies on grids of their own: v += dt (f / m + g)
         self.update_velocities(dt); //                            v += dt (f / m + g)                  (3)
         self.feel_loads(dt, Some(dt))?; //                        supports and loads, on points of bodies
         self.apply_loads(dt); //                                  v += dt F / m
@@ -143,8 +143,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pull_springs(dt, Some(dt)); //                       between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
-        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.exchange_velocities(); //                            v~ that was kept, to move by; v~ of now, for dv
+        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.damp(dt); //                                         of v~ for dv
         self.update_velocities_and_positions(dt)?; //             G2P: v_p += dv, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
@@ -162,6 +162,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.particles_to_grid(Share::Everything); //             P2G: m, p, f = -sum V sigma grad S
         self.interpolate_velocities(); //                         v = p / m                            (4)
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
+        self.push_references(dt)?; //                             bodies on grids of their own: v += dt (f / m + g)
         self.detect_contact(Some(dt)); //                         surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                              one v for bodies that glue joins
         self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
@@ -194,6 +195,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.particles_to_grid(Share::Everything); //             P2G: m, p, f = -sum V sigma grad S
         self.interpolate_velocities(); //                         v = p / m                            (4)
         self.impose_boundary_conditions(); //                     of rigid bodies and walls
+        self.push_references(dt)?; //                             bodies on grids of their own: v += dt (f / m + g)
         self.detect_contact(Some(dt)); //                         surfaces, normals and gaps where bodies meet
         self.join_glued_bodies(); //                              one v for bodies that glue joins
         self.contact_on_interpolated(dt, ContactUse::Start); //   by all laws but `surface`: (5)-(13), (20)-(22)
@@ -204,12 +206,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pull_springs(dt, None); //                           between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
-        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.keep_velocities_and_clear_momentum(); //             v~, for dv; p = 0
         self.damp(dt); //                                         of v~ for dv
         self.update_particle_velocities(dt)?; //                  G2P: v_p += dv; P2G: p
         self.interpolate_again(); //                              v = p / m, with m as before
         self.impose_boundary_conditions(); //                     and again
+        self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.account(dt, Interpolated::Twice); //                 the same, while u^1 is at the nodes
         self.hold_supported_nodes(); //                           v~, where supports act
         self.contact_on_straining(dt); //                         v~, and walls

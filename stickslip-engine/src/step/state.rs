@@ -5,7 +5,7 @@ use super::cpu::Threads;
 use super::heat::Warmed;
 use super::loads::LoadRoom;
 use super::mechanism::{JointSums, Mechanism, RigidSurfaces, TouchForce};
-use super::reference::{ReferenceBody, References, Touching};
+use super::reference::{CommonPartner, ReferenceBody, References, Skin, Touching};
 use super::relax::RelaxationProgress;
 use super::springs::SpringRoom;
 use super::together::LawRoom;
@@ -62,6 +62,8 @@ pub struct Settings<T, const D: usize> {
     pub rigid: Vec<usize>,
     /// Bodies on grids of their own, in their order.
     pub references: Vec<ReferenceBody<D>>,
+    /// Bodies on the common grid that such a body may meet.
+    pub common: Vec<CommonPartner>,
     /// After which lengths everything is there again for these.
     pub lengths: PeriodLengths<D>,
     /// The functions at the particles of each of these.
@@ -181,6 +183,8 @@ pub struct Workspace<T, const D: usize> {
     pub reference_touching: Touching<D>,
     /// Points of theirs that may come to touch.
     pub neighbours: Neighbours<D>,
+    /// What of bodies on the common grid is near their surfaces.
+    pub skin: Skin,
     /// The signal that these bodies allow, if there are any [m/s].
     pub reference_signal: Option<f64>,
     /// What pairs of bodies did in the step, use by use of contact.
@@ -223,6 +227,7 @@ impl<T, const D: usize> Workspace<T, D> {
             reference_touches: Vec::new(),
             reference_touching: Touching::default(),
             neighbours: Neighbours::default(),
+            skin: Skin::default(),
             reference_signal: None,
             touches: Default::default(),
             weights: Vec::new(),

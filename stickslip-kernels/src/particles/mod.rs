@@ -359,6 +359,13 @@ impl<T: Real, const D: usize> Particles<T, D> {
         (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), self.half_sides(i))
     }
 
+    /// Where particle `i` was before its body deformed [m].
+    #[inline]
+    pub fn start(&self, i: usize) -> Vector<T, D> {
+        let at = |column: usize| self.columns[self.first() + column * self.stride + i];
+        Vector::from_fn(|k| at(ColumnStart::<D>::START + k))
+    }
+
     /// Half the sides of the box of particle `i`: the undeformed ones, or those of the box that holds its domain [m].
     #[inline]
     pub fn half_sides(&self, i: usize) -> Vector<T, D> {

@@ -1,6 +1,6 @@
 //! What points that touch do to the nodes: the pressure and the shear of the layer.
 
-use super::{Deforming, Friction, LANDED, Memory, Met, PATIENCE, Rigid, Touch};
+use super::{Deforming, Friction, LANDED, Memory, Met, Obstacle, PATIENCE, Touch};
 use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::Vector;
 
@@ -9,12 +9,12 @@ use stickslip_mechanics::tensor::Vector;
 /// under an edge, and where bodies overlap at the start.
 pub fn begin<const D: usize>(
     bodies: &[Deforming<'_, D>],
-    rigids: &[&dyn Rigid],
+    obstacles: &[&dyn Obstacle],
     touches: &mut [Touch<D>],
     dt: f64,
 ) {
     for touch in touches.iter_mut().filter(|touch| touch.memory.age == 0.0) {
-        let approach = -touch.normal.dot(relative_velocity(bodies, rigids, touch));
+        let approach = -touch.normal.dot(relative_velocity(bodies, obstacles, touch));
         let felt = (approach * dt).clamp(0.0, -touch.gap);
         touch.memory.unfelt = -touch.gap - felt;
         touch.memory.patience = if -touch.gap <= LANDED * felt { PATIENCE } else { 1.0 };
@@ -82,12 +82,12 @@ fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
 /// what is known of each point in the next step.
 pub fn slip<const D: usize>(
     bodies: &[Deforming<'_, D>],
-    rigids: &[&dyn Rigid],
+    obstacles: &[&dyn Obstacle],
     (touches, dt): (&mut [Touch<D>], f64),
     rule: &dyn Fn(&Touch<D>) -> Friction,
 ) -> Vec<Memory> {
     let after = |touch: &mut Touch<D>| {
-        let velocity = relative_velocity(bodies, rigids, touch);
+        let velocity = relative_velocity(bodies, obstacles, touch);
         touch.slip = velocity - touch.normal * velocity.dot(touch.normal);
         let slip = touch.slip;
         let mut memory = touch.memory;
@@ -118,7 +118,7 @@ fn settling<const D: usize>(bodies: &[Deforming<'_, D>], touch: &Touch<D>) -> f6
 /// Velocity of a body at a point that touches, against its partner's [m/s].
 fn relative_velocity<const D: usize>(
     bodies: &[Deforming<'_, D>],
-    rigids: &[&dyn Rigid],
+    obstacles: &[&dyn Obstacle],
     touch: &Touch<D>,
 ) -> Vector<f64, D> {
     let of =
@@ -127,6 +127,6 @@ fn relative_velocity<const D: usize>(
     let own = of(body, &body.surface[touch.memory.point as usize].weights);
     own - match &touch.met {
         Met::Deforming(b, weights) => of(&bodies[*b], weights),
-        Met::Rigid(r) => Vector::of(rigids[*r].velocity((touch.at - touch.away).space())),
+        Met::Obstacle(r) => Vector::of(obstacles[*r].velocity((touch.at - touch.away).space())),
     }
 }

@@ -64,11 +64,11 @@ pub struct Deforming<'a, const D: usize> {
     pub settling: f64,
 }
 
-/// A rigid body, as contact sees it.
-pub trait Rigid: Sync {
+/// What has no grid of its own, as contact sees it: a rigid body, a face of the domain, a body on the common grid.
+pub trait Obstacle: Sync {
     /// Its number among all bodies.
     fn body(&self) -> usize;
-    /// Distance from a place to its surface, and the direction out of it.
+    /// Distance from a place to its surface, and the direction out of it; no number where it is not known.
     fn level(&self, place: [f64; 3]) -> SignedDistance;
     /// Its velocity at a place [m/s].
     fn velocity(&self, place: [f64; 3]) -> [f64; 3];
@@ -79,9 +79,17 @@ pub trait Rigid: Sync {
     fn nearest(&self, place: [f64; 3]) -> (SignedDistance, [f64; 3]) {
         (self.level(place), [0.0; 3])
     }
-    /// Whether forces move it, not a prescription.
-    fn is_free(&self) -> bool {
+    /// Whether it has energy of its own: forces move it, not a prescription.
+    fn has_energy(&self) -> bool {
         false
+    }
+    /// Its cell over the moduli of its longitudinal and its shear wave [m/Pa].
+    fn softness(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+    /// Whether its velocities say how far its surface has moved; of others all points in their box are looked at.
+    fn is_tracked(&self) -> bool {
+        true
     }
 }
 
@@ -159,8 +167,8 @@ pub struct Touch<const D: usize> {
 pub enum Met<const D: usize> {
     /// A body that deforms, by its place in the list of these, and its functions there.
     Deforming(usize, Weights<D>),
-    /// A rigid body, by its place in the list of these.
-    Rigid(usize),
+    /// An obstacle, by its place in the list of these.
+    Obstacle(usize),
 }
 
 /// The points that touched and do no longer; both lists are ordered by body, point and partner. What their layers
@@ -175,11 +183,11 @@ pub fn parted<'a, const D: usize>(
 }
 
 impl<const D: usize> Touch<D> {
-    /// The body and its partner, by their places in the list of those that deform; the body twice at a rigid one.
+    /// The body and its partner, by their places in the list of those that deform; the body twice at an obstacle.
     pub fn sides(&self) -> [usize; 2] {
         match self.met {
             Met::Deforming(b, _) => [self.side, b],
-            Met::Rigid(_) => [self.side; 2],
+            Met::Obstacle(_) => [self.side; 2],
         }
     }
 

@@ -2,19 +2,19 @@
 
 use super::images::{PeriodLengths, pairs};
 use super::look::{BACK, came_through, looks_at};
-use super::{Deforming, Memory, Met, Rigid, STIFFNESS, Touch, look};
+use super::{Deforming, Memory, Met, Obstacle, STIFFNESS, Touch, look};
 use rayon::prelude::*;
 use stickslip_mechanics::geometry::form::digits;
 use stickslip_mechanics::geometry::{Shape, SignedDistance};
 use stickslip_mechanics::tensor::Vector;
 
-/// A pair of bodies that may touch: the second deforms, or is rigid.
+/// Whom a body may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Partner {
     /// Place in the list of bodies that deform.
     Deforming(usize),
-    /// Place in the list of rigid bodies.
-    Rigid(usize),
+    /// Place in the list of obstacles.
+    Obstacle(usize),
 }
 
 /// By how much a body may bulge beyond the points of its surface, and move, in cells.
@@ -36,12 +36,12 @@ const CERTAIN: f64 = 0.6;
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours<const D: usize> {
     pairs: Vec<Pair<D>>,
-    rigid: Vec<RigidPair>,
+    at_obstacles: Vec<ObstaclePair>,
     /// Boxes around bodies when their neighbours were sought.
     boxes: Vec<[Vector<f64, D>; 2]>,
     /// How far each body has moved since at most [m].
     moved: Vec<f64>,
-    /// Bodies beside rigid ones, and how far these have moved there [m].
+    /// Bodies beside obstacles, and how far these have moved there [m].
     beside: Vec<(usize, usize, f64)>,
     lengths: PeriodLengths<D>,
 }
@@ -58,9 +58,9 @@ struct Pair<const D: usize> {
     place: Vector<f64, D>,
 }
 
-/// A point near a rigid body, and its place beside it in [`Neighbours::beside`].
+/// A point near an obstacle, and its place beside it in [`Neighbours::beside`].
 #[derive(Clone, Copy, Debug)]
-struct RigidPair {
+struct ObstaclePair {
     body: u32,
     point: u32,
     beside: u32,
@@ -70,23 +70,23 @@ struct RigidPair {
 /// The points that touch, by body, point and partner. `meet` says whether a body touches a partner at all; `known` are
 /// the points that touched before, in the same order. Bodies meet images of each other, and of themselves.
 pub fn find<const D: usize>(
-    (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
+    (bodies, obstacles): (&[Deforming<'_, D>], &[&dyn Obstacle]),
     known: &[Memory],
     meet: &(dyn Fn(usize, Partner) -> bool + Sync),
     neighbours: &mut Neighbours<D>,
     lengths: PeriodLengths<D>,
 ) -> Vec<Touch<D>> {
-    if neighbours.are_old((bodies, rigids), meet) {
-        *neighbours = Neighbours::new((bodies, rigids), meet, lengths);
+    if neighbours.are_old((bodies, obstacles), meet) {
+        *neighbours = Neighbours::new((bodies, obstacles), meet, lengths);
     }
     let here = &*neighbours;
-    let touches = |a: usize| here.touches_of((bodies, rigids, a), known);
+    let touches = |a: usize| here.touches_of((bodies, obstacles, a), known);
     (0..bodies.len()).into_par_iter().map(touches).collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
 impl<const D: usize> Neighbours<D> {
     /// Takes note of how bodies move in a step of `dt` [s].
-    pub fn moved(&mut self, (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]), dt: f64) {
+    pub fn moved(&mut self, (bodies, obstacles): (&[Deforming<'_, D>], &[&dyn Obstacle]), dt: f64) {
         for (moved, body) in self.moved.iter_mut().zip(bodies) {
             let squares = body.interior.velocities.iter().map(|v| v.dot(*v));
             *moved += squares.fold(0.0, f64::max).sqrt() * dt;
@@ -94,37 +94,37 @@ impl<const D: usize> Neighbours<D> {
         for (a, r, moved) in &mut self.beside {
             // A rigid motion is fastest at a corner, and which of its images is where in the box is not known.
             let [low, high] = self.boxes[*a];
-            let (_, away) = nearest(rigids[*r], (low + high) * 0.5);
+            let (_, away) = nearest(obstacles[*r], (low + high) * 0.5);
             let [low, high] = [low - away - self.lengths.0, high - away + self.lengths.0];
             let corners = (0..1_usize << D).map(|corner| {
                 let at = Vector::<f64, D>::from_fn(|k| if corner >> k & 1 == 1 { high[k] } else { low[k] });
-                Vector::<f64, 3>(rigids[*r].velocity(at.space())).norm()
+                Vector::<f64, 3>(obstacles[*r].velocity(at.space())).norm()
             });
             *moved += corners.fold(0.0, f64::max) * dt;
         }
     }
 
-    /// Whether a body has moved so far since that neighbours may be missed, or a rigid one has come beside it.
+    /// Whether a body has moved so far since that neighbours may be missed, or an obstacle has come beside it.
     fn are_old(
         &self,
-        (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
+        (bodies, obstacles): (&[Deforming<'_, D>], &[&dyn Obstacle]),
         meet: &(dyn Fn(usize, Partner) -> bool + Sync),
     ) -> bool {
         let far = |a: usize, moved: f64| moved.is_nan() || moved > SKIN * bodies[a].interior.form.cell;
         let has_come = |r: usize| {
-            let bounds = rigids[r].bounds().map(Vector::of);
+            let bounds = obstacles[r].bounds().map(Vector::of);
             let beside = |a: usize| self.beside.binary_search_by_key(&(a, r), |&(a, r, _)| (a, r)).is_ok();
             let mut near = (0..bodies.len()).filter(|&a| self.lengths.overlap(&self.boxes[a], &bounds));
-            near.any(|a| !beside(a) && meet(a, Partner::Rigid(r)))
+            near.any(|a| !beside(a) && meet(a, Partner::Obstacle(r)))
         };
         self.moved.len() != bodies.len()
             || self.moved.iter().enumerate().any(|(a, &moved)| far(a, moved))
             || self.beside.iter().any(|&(a, _, moved)| far(a, moved))
-            || (0..rigids.len()).any(has_come)
+            || (0..obstacles.len()).any(has_come)
     }
 
     fn new(
-        (bodies, rigids): (&[Deforming<'_, D>], &[&dyn Rigid]),
+        (bodies, obstacles): (&[Deforming<'_, D>], &[&dyn Obstacle]),
         meet: &(dyn Fn(usize, Partner) -> bool + Sync),
         lengths: PeriodLengths<D>,
     ) -> Self {
@@ -151,29 +151,34 @@ impl<const D: usize> Neighbours<D> {
         let seen = Seen { bodies, places: &places, boxes: &boxes, near: &near, lengths };
         let pairs = seen.close_points().into_par_iter().filter_map(|close| seen.pair(close)).collect();
         let beside: Vec<(usize, usize, f64)> = (0..bodies.len())
-            .flat_map(|a| (0..rigids.len()).map(move |r| (a, r, 0.0)))
+            .flat_map(|a| (0..obstacles.len()).map(move |r| (a, r, 0.0)))
             .filter(|&(a, r, _)| {
-                lengths.overlap(&boxes[a], &rigids[r].bounds().map(Vector::of)) && meet(a, Partner::Rigid(r))
+                lengths.overlap(&boxes[a], &obstacles[r].bounds().map(Vector::of))
+                    && meet(a, Partner::Obstacle(r))
             })
             .collect();
-        let rigid_pairs = |(number, &(a, r, _)): (usize, &(usize, usize, f64))| {
+        let obstacle_pairs = |(number, &(a, r, _)): (usize, &(usize, usize, f64))| {
             let far = 2.0 * SKIN * bodies[a].interior.form.cell;
             let close = (0..).zip(&places[a]).filter_map(|(point, at)| {
-                let gap = CERTAIN * nearest(rigids[r], *at).0.distance;
+                let gap = if obstacles[r].is_tracked() {
+                    CERTAIN * nearest(obstacles[r], *at).0.distance
+                } else {
+                    f64::NEG_INFINITY
+                };
                 let gap = if gap.is_nan() { f64::NEG_INFINITY } else { gap };
-                (gap <= far).then_some(RigidPair { body: a as u32, point, beside: number as u32, gap })
+                (gap <= far).then_some(ObstaclePair { body: a as u32, point, beside: number as u32, gap })
             });
             close.collect::<Vec<_>>()
         };
-        let rigid = beside.par_iter().enumerate().map(rigid_pairs).collect::<Vec<_>>();
-        let rigid = rigid.into_iter().flatten().collect();
-        Neighbours { pairs, rigid, boxes, moved: vec![0.0; bodies.len()], beside, lengths }
+        let at_obstacles = beside.par_iter().enumerate().map(obstacle_pairs).collect::<Vec<_>>();
+        let at_obstacles = at_obstacles.into_iter().flatten().collect();
+        Neighbours { pairs, at_obstacles, boxes, moved: vec![0.0; bodies.len()], beside, lengths }
     }
 
     /// The points of a body's surface that touch: those that touched before, and neighbours that have come so near.
     fn touches_of(
         &self,
-        (bodies, rigids, a): (&[Deforming<'_, D>], &[&dyn Rigid], usize),
+        (bodies, obstacles, a): (&[Deforming<'_, D>], &[&dyn Obstacle], usize),
         known: &[Memory],
     ) -> Vec<Touch<D>> {
         let number = bodies[a].body as u32;
@@ -190,8 +195,8 @@ impl<const D: usize> Neighbours<D> {
             match bodies.binary_search_by_key(&partner, |body| body.body) {
                 Ok(b) => point(memory.point).in_body(b, *memory),
                 Err(_) => {
-                    let r = rigids.binary_search_by_key(&partner, |rigid| rigid.body()).ok()?;
-                    point(memory.point).in_rigid((r, rigids[r]), *memory)
+                    let r = obstacles.binary_search_by_key(&partner, |obstacle| obstacle.body()).ok()?;
+                    point(memory.point).in_obstacle((r, obstacles[r]), *memory)
                 }
             }
         };
@@ -203,12 +208,12 @@ impl<const D: usize> Neighbours<D> {
                 touches.extend(point(pair.point).come_to(b, pair.place));
             }
         }
-        let pairs = &self.rigid[self.rigid.partition_point(|pair| (pair.body as usize) < a)..];
+        let pairs = &self.at_obstacles[self.at_obstacles.partition_point(|pair| (pair.body as usize) < a)..];
         for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
             let (_, r, moved) = self.beside[pair.beside as usize];
-            if pair.gap <= self.moved[a] + moved && !is_known(pair.point, rigids[r].body()) {
+            if pair.gap <= self.moved[a] + moved && !is_known(pair.point, obstacles[r].body()) {
                 let point = point(pair.point);
-                touches.extend(point.in_rigid((r, rigids[r]), point.fresh(rigids[r].body())));
+                touches.extend(point.in_obstacle((r, obstacles[r]), point.fresh(obstacles[r].body())));
             }
         }
         touches.sort_by_key(|touch| touch.memory.key());
@@ -341,9 +346,9 @@ impl<const D: usize> Seen<'_, '_, D> {
     }
 }
 
-/// Distance from a place to a rigid body or the image of it that is nearest, and from the body to that image [m].
-fn nearest<const D: usize>(rigid: &dyn Rigid, at: Vector<f64, D>) -> (SignedDistance, Vector<f64, D>) {
-    let (level, away) = rigid.nearest(at.space());
+/// Distance from a place to an obstacle or the image of it that is nearest, and from it to that image [m].
+fn nearest<const D: usize>(obstacle: &dyn Obstacle, at: Vector<f64, D>) -> (SignedDistance, Vector<f64, D>) {
+    let (level, away) = obstacle.nearest(at.space());
     (level, Vector::of(away))
 }
 
@@ -502,27 +507,34 @@ impl<const D: usize> Point<'_, '_, D> {
         self.lengths.away(nodes.at(&nodes.form.weights(start), &nodes.places), self.at)
     }
 
-    fn in_rigid(&self, (r, rigid): (usize, &dyn Rigid), memory: Memory) -> Option<Touch<D>> {
-        let (level, away) = nearest(rigid, self.at);
+    fn in_obstacle(&self, (r, obstacle): (usize, &dyn Obstacle), memory: Memory) -> Option<Touch<D>> {
+        let (level, away) = nearest(obstacle, self.at);
         if level.distance.is_nan() || level.distance >= 0.0 {
             return None;
         }
         let body = &self.bodies[self.a];
         let cell = body.interior.form.cell;
-        let face = self.face_in(rigid, (Vector::of(level.gradient), level.distance), cell);
-        let layer = (1.0, body.moduli.map(|modulus| STIFFNESS * modulus / cell));
-        Some(self.touch((memory, Met::Rigid(r), away), face, layer))
+        let face = self.face_in(obstacle, (Vector::of(level.gradient), level.distance), cell);
+        let softness = obstacle.softness();
+        let of = |k: usize| STIFFNESS * body.moduli[k] / (cell + softness[k] * body.moduli[k]);
+        let layer = (1.0, [of(0), of(1)]);
+        Some(self.touch((memory, Met::Obstacle(r), away), face, layer))
     }
 
-    /// Outward normal and distance of the face of a rigid body that a point came through: near an edge it need not be
+    /// Outward normal and distance of the face of an obstacle that a point came through: near an edge it need not be
     /// the nearest. The nearest counts where no face looks at the point, as on a sharp wedge.
-    fn face_in(&self, rigid: &dyn Rigid, face: (Vector<f64, D>, f64), cell: f64) -> (Vector<f64, D>, f64) {
+    fn face_in(
+        &self,
+        obstacle: &dyn Obstacle,
+        face: (Vector<f64, D>, f64),
+        cell: f64,
+    ) -> (Vector<f64, D>, f64) {
         let toward = normal(&self.bodies[self.a], self.number);
         if looks_at(face.0, toward) {
             return face;
         }
         let back = toward * (-BACK * cell);
-        let (through, distance) = came_through(&nearest(rigid, self.at + back).0, back);
+        let (through, distance) = came_through(&nearest(obstacle, self.at + back).0, back);
         if looks_at(through, toward) && distance < 0.0 { (through, distance) } else { face }
     }
 }

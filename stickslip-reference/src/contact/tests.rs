@@ -10,7 +10,7 @@ struct Ground<const D: usize> {
     normal: [f64; 3],
 }
 
-impl<const D: usize> Rigid for Ground<D> {
+impl<const D: usize> Obstacle for Ground<D> {
     fn body(&self) -> usize {
         99
     }
@@ -75,7 +75,7 @@ impl<const D: usize> Meeting<D> {
         let dt = courant * slowest;
         let moduli = [elastic().p_wave_modulus(), elastic().shear_modulus];
         let (gravity, friction) = (self.gravity, self.friction);
-        let grounds: Vec<&dyn Rigid> = self.grounds.iter().map(|ground| ground as &dyn Rigid).collect();
+        let grounds: Vec<&dyn Obstacle> = self.grounds.iter().map(|ground| ground as &dyn Obstacle).collect();
         let mut bodies: Vec<Deforming<'_, D>> = (self.bodies.iter_mut().enumerate())
             .map(|(body, (alone, shape, surface))| Deforming {
                 body,

@@ -36,6 +36,7 @@ mod loads;
 mod many_bodies;
 mod meshes;
 mod mirror;
+mod mixed;
 mod nearly_incompressible;
 mod paths;
 mod periodic;

@@ -7,6 +7,7 @@
 //!
 //! Expected: the same bits of all particles, of the sums that tables hold, and of time. No tolerance.
 
+use crate::mixed::thrown;
 use crate::reference_free::several;
 use crate::reference_periodic::packing;
 use crate::threads::{damped, periodic, scene as crowd};
@@ -191,6 +192,8 @@ fn on_grids_of_their_own_between_periodic_faces() {
 fn on_grids_of_their_own_among_free_rigid_ones() {
     compare("in the plane", &several("plane-strain"), 60);
     compare("in space", &several("3d"), 20);
+    compare("on both grids, in the plane", &thrown("plane-strain"), 60);
+    compare("on both grids, in space", &thrown("3d"), 20);
 }
 
 #[test]

@@ -2,13 +2,13 @@
 
 use crate::contact::BlockSums;
 use crate::tensor::{Vector, cross};
-use stickslip_reference::contact::{Memory, Met, Rigid, Touch};
+use stickslip_reference::contact::{Memory, Met, Obstacle, Touch};
 
 /// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies, and what was lost with those
 /// that have parted. Partners have the numbers below `bodies`, faces of the domain those from there on.
 pub(super) fn book<const D: usize>(
     all: &mut Vec<BlockSums>,
-    rigid: &[&dyn Rigid],
+    obstacles: &[&dyn Obstacle],
     (touches, parted, dt): (&[Touch<D>], &[Memory], f64),
     bodies: usize,
 ) {
@@ -25,7 +25,7 @@ pub(super) fn book<const D: usize>(
         if partner >= bodies {
             continue;
         }
-        add(sums_of(all, [body, partner]), (touch, dt), body < partner, rigid);
+        add(sums_of(all, [body, partner]), (touch, dt), body < partner, obstacles);
     }
 }
 
@@ -43,7 +43,7 @@ fn add<const D: usize>(
     sums: &mut BlockSums,
     (touch, dt): (&Touch<D>, f64),
     is_first: bool,
-    rigid: &[&dyn Rigid],
+    obstacles: &[&dyn Obstacle],
 ) {
     // Through a periodic face it acts where the first body is.
     let at = if is_first { touch.at } else { touch.at - touch.away }.space();
@@ -70,11 +70,11 @@ fn add<const D: usize>(
         sums.nodes += 1;
     }
     sums.slip += touch.area * if touch.friction > 0.0 { touch.slip.norm() * dt } else { 0.0 };
-    // What a free body gains is its own energy.
-    if let Met::Rigid(r) = touch.met
-        && !rigid[r].is_free()
+    // What a body gains that nothing prescribes is its own energy.
+    if let Met::Obstacle(r) = touch.met
+        && !obstacles[r].has_energy()
     {
-        let speed = Vector::<f64, D>::of(rigid[r].velocity((touch.at - touch.away).space()));
+        let speed = Vector::<f64, D>::of(obstacles[r].velocity((touch.at - touch.away).space()));
         sums.work += (push + rub).dot(speed);
     }
 }

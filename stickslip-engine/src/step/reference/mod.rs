@@ -15,6 +15,7 @@
 //! ```
 
 mod books;
+mod common;
 mod loads;
 mod rest;
 mod rigid;
@@ -25,7 +26,7 @@ pub(super) use springs::center as center_of;
 
 use super::Engine;
 use super::among::Among;
-use super::state::Settings;
+use super::state::{Settings, Workspace};
 use super::walls::middle;
 use crate::body::{Body, Particle, Totals};
 use crate::door::{RestoreError, SavedState, StepError};
@@ -38,6 +39,8 @@ use crate::pass::{FaultKind, Found, ParticleFault, ParticleLoop};
 use crate::scene::{ContactLaw, FrictionMemory, Interior as Kind, Problem, Scene, StartVelocities};
 use crate::tensor::{Matrix, Vector, cross};
 use crate::threads::each;
+use common::{CommonBody, CommonGrid};
+pub(super) use common::{CommonPartner, Skin};
 use loads::ReferenceLoads;
 use rest::{Begun, Slowing};
 use rigid::RigidBody;
@@ -46,7 +49,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Partner, PeriodLengths, Rigid, STIFFNESS, Touch, begin,
+    Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Touch, begin,
     find, parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
@@ -290,22 +293,31 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             self.measures_balance().then(|| (Begun::of(&self.state.references.nodes), self.slowing(dt)));
         let mut loads = self.feel_reference_loads(dt)?;
         let walls = self.rigid_walls();
-        let Engine { settings, state, workspace, among, .. } = self;
-        let rigid = rigid_bodies(&settings.rigid, &state.bodies, settings.lengths);
-        let rigid = all_rigid(&rigid, &walls);
+        let Engine { settings, state, workspace, among, kernels, .. } = self;
+        let Workspace { active, boundary, field, neighbours, skin, reference_walls, .. } = workspace;
+        let grid = CommonGrid { active, boundary, lattice: &settings.lattice, kernels };
         let count = state.bodies.len();
         let mut bodies = deforming(&settings.references, &mut state.references.nodes);
+        let meets = |body: usize, other: usize| {
+            let rules = &settings.rules;
+            other >= count || rules.rule(rules.number(body, other)).law != ContactLaw::None
+        };
+        if !settings.common.is_empty() {
+            let seen = (&settings.common[..], &state.bodies[..], &field.nodes[..]);
+            *skin = Skin::new(grid, seen, (&bodies, &meets), among.as_ref());
+        }
+        let rigid = rigid_bodies(&settings.rigid, &state.bodies, settings.lengths);
+        let common = common_bodies(&settings.common, (grid, skin));
+        let obstacles = all_obstacles((&rigid, &common), &walls);
         let meet = |a: usize, partner: Partner| {
             let other = match partner {
                 Partner::Deforming(b) => settings.references[b].body,
-                Partner::Rigid(r) => rigid[r].body(),
+                Partner::Obstacle(r) => obstacles[r].body(),
             };
-            other >= count
-                || settings.rules.rule(settings.rules.number(settings.references[a].body, other)).law
-                    != ContactLaw::None
+            meets(settings.references[a].body, other)
         };
         let known = &state.references.touching;
-        let mut touches = find((&bodies, &rigid), known, &meet, &mut workspace.neighbours, settings.lengths);
+        let mut touches = find((&bodies, &obstacles), known, &meet, neighbours, settings.lengths);
         // A step in which a body comes to touch is too long for its layer: that presses from the next one on.
         let layers = &mut state.references.layers;
         layers.resize(bodies.len(), Layers::default());
@@ -324,10 +336,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             presses
         });
         let parted: Vec<Memory> = parted(known, &touches).copied().collect();
-        begin(&bodies, &rigid, &mut touches, dt);
+        begin(&bodies, &obstacles, &mut touches, dt);
         unfelt.extend(touches.iter().map(|touch| (touch.side, touch.unfelt_force())));
         press(&mut bodies, &mut touches, &|touch| friction(settings, touch, count));
-        workspace.reference_walls.clear();
+        drop(obstacles);
+        settings.common.iter().for_each(|of| grid.push(skin, of.body, &mut field.nodes, &touches));
+        reference_walls.clear();
         let mut own = Homeward::default();
         for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {
             // Of several ranks one moves the nodes of a body, that with its particles.
@@ -339,7 +353,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             body.interior.accelerate(dt, gravity, &loads.inertia);
             if let Some(before) = before {
                 let reactions = body.interior.reactions(&before, gravity, &loads.inertia, dt);
-                RigidWall::book_held(&walls, &mut workspace.reference_walls, (body.body, &reactions), count);
+                RigidWall::book_held(&walls, reference_walls, (body.body, &reactions), count);
             }
             if among.is_some() {
                 own.bodies.push((place, flat(&body.interior.velocities)));
@@ -379,10 +393,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// What the layers store and lose by the velocities of the step, which then moves the nodes.
     fn slip_references(&mut self, dt: f64) {
         let walls = self.rigid_walls();
-        let Engine { settings, state, workspace, among, .. } = self;
-        let Touching { touches, parted, .. } = &mut workspace.reference_touching;
+        let Engine { settings, state, workspace, among, kernels, .. } = self;
+        let Workspace { active, boundary, field, neighbours, skin, reference_touching, .. } = workspace;
+        let Touching { touches, parted, .. } = reference_touching;
+        let grid = CommonGrid { active, boundary, lattice: &settings.lattice, kernels };
+        if !settings.common.is_empty() {
+            skin.follow(grid, &field.nodes, among.as_ref());
+        }
         let rigid = rigid_bodies(&settings.rigid, &state.bodies, settings.lengths);
-        let rigid = all_rigid(&rigid, &walls);
+        let common = common_bodies(&settings.common, (grid, skin));
+        let obstacles = all_obstacles((&rigid, &common), &walls);
         let count = state.bodies.len();
         let bodies = deforming(&settings.references, &mut state.references.nodes);
         let layers = &mut state.references.layers;
@@ -398,13 +418,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 Met::Deforming(b, _) => {
                     [touch.side, b].iter().for_each(|&side| store(side, 0.5 * touch.energy()))
                 }
-                Met::Rigid(_) => store(touch.side, touch.energy()),
+                Met::Obstacle(_) => store(touch.side, touch.energy()),
             }
         }
         state.references.touching =
-            slip(&bodies, &rigid, (touches, dt), &|touch| friction(settings, touch, count));
-        workspace.neighbours.moved((&bodies, &rigid), dt);
-        books::book(&mut workspace.reference_touches, &rigid, (touches, parted, dt), count);
+            slip(&bodies, &obstacles, (touches, dt), &|touch| friction(settings, touch, count));
+        neighbours.moved((&bodies, &obstacles), dt);
+        books::book(&mut workspace.reference_touches, &obstacles, (touches, parted, dt), count);
         if !state.walls.is_empty() {
             let here = |body: usize| !state.bodies[body].particles.is_empty();
             RigidWall::book(&walls, &mut workspace.reference_walls, (touches, dt), (here, count));
@@ -766,13 +786,23 @@ fn rigid_bodies<'a, T, const D: usize>(
     rigid.iter().filter_map(|&body| RigidBody::new(body, &bodies[body], lengths)).collect()
 }
 
-/// These and closed faces.
-fn all_rigid<'a, const D: usize>(
-    bodies: &'a [RigidBody<'_>],
+/// Bodies on the common grid as contact sees them.
+fn common_bodies<'a, T: Laned, const D: usize>(
+    common: &'a [CommonPartner],
+    near: (CommonGrid<'a, T, D>, &'a Skin),
+) -> Vec<CommonBody<'a, T, D>> {
+    common.iter().map(|partner| CommonBody::new(partner, near)).collect()
+}
+
+/// Rigid bodies and those on the common grid, in their order, and closed faces.
+fn all_obstacles<'a, T: Laned, const D: usize>(
+    (rigid, common): (&'a [RigidBody<'_>], &'a [CommonBody<'_, T, D>]),
     walls: &'a [RigidWall<D>],
-) -> Vec<&'a dyn Rigid> {
-    let bodies = bodies.iter().map(|rigid| rigid as &dyn Rigid);
-    bodies.chain(walls.iter().map(|wall| wall as &dyn Rigid)).collect()
+) -> Vec<&'a dyn Obstacle> {
+    let rigid = rigid.iter().map(|body| body as &dyn Obstacle);
+    let mut bodies: Vec<_> = rigid.chain(common.iter().map(|body| body as &dyn Obstacle)).collect();
+    bodies.sort_by_key(|body| body.body());
+    bodies.into_iter().chain(walls.iter().map(|wall| wall as &dyn Obstacle)).collect()
 }
 
 /// Friction at a point, by its face or the rule of its pair, where there are so many bodies; without a memory there,

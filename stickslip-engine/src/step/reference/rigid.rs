@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::geometry::{Bounds, MirroredShape, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
 use crate::tensor::Vector;
-use stickslip_reference::contact::{PeriodLengths, Rigid};
+use stickslip_reference::contact::{Obstacle, PeriodLengths};
 
 /// A rigid body, where it is when a step begins.
 pub(super) struct RigidBody<'a> {
@@ -79,7 +79,7 @@ impl Images {
     }
 }
 
-impl Rigid for RigidBody<'_> {
+impl Obstacle for RigidBody<'_> {
     fn body(&self) -> usize {
         self.body
     }
@@ -111,7 +111,7 @@ impl Rigid for RigidBody<'_> {
         found.expect("there is an image")
     }
 
-    fn is_free(&self) -> bool {
+    fn has_energy(&self) -> bool {
         self.motion.as_free().is_some()
     }
 }

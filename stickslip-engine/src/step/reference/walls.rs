@@ -7,7 +7,7 @@ use crate::geometry::form::Reaction;
 use crate::scene::Face;
 use crate::step::walls::WallBooks;
 use crate::tensor::{Vector, cross};
-use stickslip_reference::contact::{Friction, PeriodLengths, Rigid, Touch};
+use stickslip_reference::contact::{Friction, Obstacle, PeriodLengths, Touch};
 
 /// A closed face of the domain.
 pub(super) struct RigidWall<const D: usize> {
@@ -69,7 +69,7 @@ impl<const D: usize> RigidWall<D> {
     }
 }
 
-impl<const D: usize> Rigid for RigidWall<D> {
+impl<const D: usize> Obstacle for RigidWall<D> {
     fn body(&self) -> usize {
         self.number
     }

@@ -1,7 +1,9 @@
 //! Whom bodies with interior "reference" may touch, and by which rules.
 
-use super::{interior_key, is_reference};
-use crate::scene::{ContactLaw, ContactRule, Problem, RuleNames, Scene};
+use super::{interior_key, is_reference, is_solid, material};
+use crate::geometry::{Curved, Shape};
+use crate::material::Material;
+use crate::scene::{ContactLaw, ContactRule, Problem, RuleNames, Scene, StressUpdate};
 use std::collections::BTreeMap;
 
 /// What a rule of such bodies cannot say yet: a key, what the rule says there if that is refused, and what is allowed.
@@ -80,7 +82,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
             };
             let rule = names.rule(first.1, second.1);
             let found = match (first.0, second.0) {
-                (Side::Reference, Side::Grid) => unlike(scene, pair, rule),
+                (Side::Reference, Side::Grid) => {
+                    refused(scene, pair, rule).or_else(|| unlike(scene, pair, rule))
+                }
                 (Side::Reference, _) => refused(scene, pair, rule),
                 _ => memory(scene, pair, rule),
             };
@@ -100,7 +104,7 @@ fn refused(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Pro
     let (key, found, allowed) =
         OF_RULE.iter().find_map(|(key, found, allowed)| Some((key, found(rule)?, allowed)))?;
     let [name, other] = [a, b].map(|body| &scene.bodies[body].name);
-    let grid = if is_reference(scene, b) { "both".to_string() } else { format!("`{name}`") };
+    let grid = if scene.bodies[b].is_rigid() { format!("`{name}`") } else { "both".to_string() };
     Some(Problem {
         key: format!("contact[{number}].{key}"),
         found: format!("{found} between `{name}` and `{other}`, where `{name}` has interior = \"reference\""),
@@ -109,20 +113,43 @@ fn refused(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Pro
     })
 }
 
-/// A body with interior "reference" and one on the grid, unless the law is that they do not meet.
+/// What a body on the grid cannot be that touches one with interior "reference": what it is, and what is allowed.
+type Unlike = (fn(&Scene, usize) -> bool, &'static str, &'static str);
+
+const ON_GRID: &[Unlike] = &[
+    (
+        |scene, _| scene.time.stress_update != StressUpdate::ModifiedLast,
+        "is strained by time.stress_update",
+        "\"modified-last\", the default",
+    ),
+    (|scene, _| scene.periods() != [0.0; 3], "lies between periodic faces", "open, mirror or fixed faces"),
+    (
+        |scene, body| matches!(scene.bodies[body].shape, Shape::Curved(Curved::PointCloud(_))),
+        "is a point cloud",
+        "a shape that has a surface",
+    ),
+    (
+        |scene, body| matches!(material(scene, body).law, Material::Damage(_)),
+        "may part by its law",
+        "a law that leaves material in one piece",
+    ),
+    (|scene, body| !is_solid(material(scene, body)), "is a fluid", "a solid"),
+];
+
+/// What a body on the grid cannot be that one with interior "reference" may touch.
 fn unlike(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Problem> {
     if rule.is_some_and(|rule| scene.contact[rule].law == ContactLaw::None) {
         return None;
     }
+    let (_, is, allowed) = ON_GRID.iter().find(|(is, ..)| is(scene, b))?;
     let [name, with] = [a, b].map(|body| &scene.bodies[body].name);
-    let instead = format!("interior = \"reference\" for `{with}` too, or \"grid\" for both");
     let by = rule.map_or("as no rule names the pair".to_string(), |rule| format!("by contact[{rule}]"));
     Some(Problem {
         key: interior_key(scene, a),
         found: format!(
-            "\"reference\" of `{name}`, which may touch `{with}`, {by}, and that has interior = \"grid\""
+            "\"reference\" of `{name}`, which may touch `{with}`, {by}; that has interior = \"grid\" and {is}"
         ),
-        allowed: format!("bodies with interior \"reference\" meet each other, and rigid bodies: {instead}"),
+        allowed: format!("{allowed}; or the same interior for both"),
         help: Some("if the two never meet, a rule between them with law = \"none\" says so".to_string()),
     })
 }
@@ -137,8 +164,7 @@ fn memory(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Prob
     (!matches!(rule.law, ContactLaw::None | ContactLaw::Glued)).then(|| Problem {
         key: format!("contact[{number}].friction_memory_length"),
         found: format!("a memory of friction between `{name}` and `{other}`"),
-        allowed: "one between bodies with interior = \"reference\", or such a body and a rigid one"
-            .to_string(),
+        allowed: "one of whose bodies one has interior = \"reference\"".to_string(),
         help: Some("a rule without a memory for this pair, before that one".to_string()),
     })
 }

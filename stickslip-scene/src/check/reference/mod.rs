@@ -117,11 +117,15 @@ fn no_grid(scene: &Scene) -> Option<String> {
 
 /// Whether a material is elastic and keeps its shape.
 fn stays_whole(material: &NamedMaterial) -> bool {
-    let elastic = material.law.elastic();
-    let is_solid = elastic.shear_modulus > LEAST_SHEAR * elastic.bulk_modulus;
-    is_solid
+    is_solid(material)
         && material.law.trusts_deformation()
         && !matches!(material.law, Material::Damage(_) | Material::Custom(_))
+}
+
+/// Whether a material resists shear.
+fn is_solid(material: &NamedMaterial) -> bool {
+    let elastic = material.law.elastic();
+    elastic.shear_modulus > LEAST_SHEAR * elastic.bulk_modulus
 }
 
 /// Shear over bulk modulus of a solid, at least; below it material is a fluid, or locks.
