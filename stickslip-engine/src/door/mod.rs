@@ -744,6 +744,23 @@ pub enum StepError {
         /// When [s].
         time: f64,
     },
+    /// A body on a grid of its own is so deep in another that they may pass through each other.
+    #[error(
+        "the surface of body `{body}` is {depth:.1} cells deep in {partner} at {} m, t = {time:.6e} s",
+        place(position)
+    )]
+    Pierced {
+        /// Name of the body.
+        body: String,
+        /// The other one.
+        partner: String,
+        /// How deep [cells].
+        depth: f64,
+        /// Where [m].
+        position: [f64; 3],
+        /// When [s].
+        time: f64,
+    },
     /// A value of the state, or of what it adds up to, is not a finite number.
     #[error(
         "{what} is not a finite number{}, t = {time:.6e} s",
@@ -826,6 +843,10 @@ impl StepError {
             StepError::Shrunk { .. } => {
                 "1 + thermal_expansion times temperature must stay above zero: see which unit each of them has; a load's \
                  `temperature` is the change since the start"
+            }
+            StepError::Pierced { .. } => {
+                "bodies that meet faster than their waves are not stopped by the layer between them, and would pass through \
+                 each other: try slower motion or a stiffer material"
             }
             StepError::Outside { .. } => "mend the function, and go on from the last checkpoint",
             StepError::NotFinite { .. } | StepError::NoNumber { .. } => {

@@ -14,8 +14,7 @@ pub fn begin<const D: usize>(
     dt: f64,
 ) {
     for touch in touches.iter_mut().filter(|touch| touch.memory.age == 0.0) {
-        let approach = -touch.normal.dot(relative_velocity(bodies, obstacles, touch));
-        let felt = (approach * dt).clamp(0.0, -touch.gap);
+        let felt = (approach(bodies, obstacles, touch) * dt).min(-touch.gap);
         touch.memory.unfelt = -touch.gap - felt;
         touch.memory.patience = if -touch.gap <= LANDED * felt { PATIENCE } else { 1.0 };
         touch.gap = -felt;
@@ -108,6 +107,15 @@ pub fn slip<const D: usize>(
         memory
     };
     touches.iter_mut().map(after).collect()
+}
+
+/// How fast a point comes deeper into its partner; zero where it moves out [m/s].
+pub fn approach<const D: usize>(
+    bodies: &[Deforming<'_, D>],
+    obstacles: &[&dyn Obstacle],
+    touch: &Touch<D>,
+) -> f64 {
+    (-touch.normal.dot(relative_velocity(bodies, obstacles, touch))).max(0.0)
 }
 
 /// How long a layer takes to feel the depth at which it began [s]: as long as the body that settles sooner.

@@ -24,6 +24,7 @@ fn scene(dimension: &str, leaving: &str) -> String {
         [space]
         dimension = "{dimension}"
         cell = 0.1
+        interior = "grid"
         domain = {{ min = {}, max = {}{leaving} }}
         [time]
         end = 1

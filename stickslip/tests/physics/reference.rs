@@ -273,16 +273,45 @@ fn several(dimension: &str) -> String {
     .replace("plane-strain", dimension)
 }
 
-/// A body that is crushed beyond what it bears ends the run with its name.
+/// A body that is crushed beyond what it bears, by a pressure of a hundred times its modulus, ends the run with its name.
 #[test]
 fn what_is_crushed_says_so() {
-    let rest = disk("disk", [0.0, 1.0], [0.0, -3.0 * WAVE])
-        + "[[bodies]]\nname = 'ground'\nmaterial = 'rubber'\nrigid = {}\n\
-           shape.half_space = { point = [0, 0], normal = [0, 1] }\n";
-    let mut simulation = start(&scene(0.125, &rest));
+    let load = "[[loads]]\nname = 'sea'\nbody = 'disk'\non = 'surface'\npressure = 1e8\n";
+    let mut simulation = start(&scene(0.125, &(disk("disk", [0.0, 1.0], [0.0; 2]) + load)));
     let fault = (0..2000).find_map(|_| simulation.step(f64::INFINITY).err()).expect("it cannot bear that");
     let StepError::Inverted { body, .. } = fault else { panic!("{fault:?}") };
     assert_eq!(body, "disk");
+}
+
+/// Two blocks that meet at .3 of the wave speed bounce; at 1.2 and 4.4 of it their layers cannot keep them apart, and
+/// the run ends with their names: they went through each other without a word.
+#[test]
+fn what_is_pierced_says_so() {
+    let block = |name: &str, x: f64, speed: f64| {
+        format!(
+            "[[bodies]]\nname = '{name}'\nmaterial = 'rubber'\nshape.box = {{ min = [{x}, 0], max = [{}, 1] }}\n\
+             velocity = [{speed}, 0]\n",
+            x + 1.0
+        )
+    };
+    let meet = |part: f64| {
+        let speed = 0.5 * part * WAVE;
+        let mut simulation = start(&scene(0.2, &(block("a", 0.0, speed) + &block("b", 1.2, -speed))));
+        let end = 0.1 / speed + 3.0 / WAVE;
+        while simulation.time() < end {
+            simulation.step(f64::INFINITY)?;
+        }
+        Ok(simulation.bodies()[0].velocity[0] / speed)
+    };
+    let back = meet(0.3).expect("it bounces");
+    assert!((-1.0..-0.5).contains(&back), "{back}");
+    for part in [1.2, 4.4] {
+        let error: StepError = meet(part).expect_err("it is pierced");
+        assert!(
+            matches!(&error, StepError::Pierced { body, partner, .. } if body == "a" && partner == "`b`"),
+            "{error}"
+        );
+    }
 }
 
 /// A ball bounces off a plane that is slanted to all axes with nearly all of its speed, in space.

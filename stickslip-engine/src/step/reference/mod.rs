@@ -49,8 +49,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Touch, begin,
-    find, parted, press, slip,
+    Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Touch,
+    approach, begin, find, parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -95,6 +95,10 @@ pub struct References<const D: usize> {
 pub struct Touching<const D: usize> {
     /// Those that touch.
     pub touches: Vec<Touch<D>>,
+    /// Those that came to touch in a step which is too long for their layers.
+    waiting: Vec<Touch<D>>,
+    /// How fast points of each body come deeper into their partners, at most [m/s].
+    approach: Vec<f64>,
     /// Those that did before.
     parted: Vec<Memory>,
     /// Forces that layers have yet to feel, of which body [N].
@@ -147,6 +151,13 @@ const ALONE: f64 = 0.9;
 
 /// What of that it does cross, over what it does where bodies are on the common grid.
 const LARGER_STEPS: f64 = 1.5;
+
+/// How deep a layer may be pressed [cells]: a body is two cells thick at least, and a point beyond its middle leaves by the other face.
+const PIERCED: f64 = 1.0;
+
+/// How much of a cell a point comes deeper into its partner in a step, at most: what strikes is stiffer within a step
+/// than waves said.
+const LANDING: f64 = 0.05;
 
 /// The usual Courant number, which bounds are measured by.
 const USUAL: f64 = 0.4;
@@ -276,6 +287,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let start = Instant::now();
         self.slow_references(dt.f64());
         self.slip_references(dt.f64());
+        self.pierced_reference().map_or(Ok(()), Err)?;
         self.watch.lap("contact", start);
         let start = Instant::now();
         let found = self.strain_references(dt);
@@ -322,7 +334,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let layers = &mut state.references.layers;
         layers.resize(bodies.len(), Layers::default());
         let before = layers.clone();
-        let mut unfelt = Vec::new();
+        let mut waiting: Vec<Touch<D>> = Vec::new();
         touches.retain_mut(|touch| {
             let sides = touch.sides();
             if touch.memory.age == 0.0 && sides.iter().any(|&side| before[side].carried) {
@@ -331,13 +343,15 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             sides.iter().for_each(|&side| layers[side].lingers = settings.references[side].transit + dt);
             let presses = sides.iter().all(|&side| before[side].lingers > 0.0) || touch.memory.age > 0.0;
             if !presses {
-                unfelt.push((touch.side, touch.area * touch.pressure()));
+                waiting.push(*touch);
             }
             presses
         });
         let parted: Vec<Memory> = parted(known, &touches).copied().collect();
         begin(&bodies, &obstacles, &mut touches, dt);
-        unfelt.extend(touches.iter().map(|touch| (touch.side, touch.unfelt_force())));
+        let pressed = waiting.iter().map(|touch| (touch.side, touch.area * touch.pressure()));
+        let unfelt = touches.iter().map(|touch| (touch.side, touch.unfelt_force()));
+        let unfelt = pressed.chain(unfelt).collect();
         press(&mut bodies, &mut touches, &|touch| friction(settings, touch, count));
         drop(obstacles);
         settings.common.iter().for_each(|of| grid.push(skin, of.body, &mut field.nodes, &touches));
@@ -363,7 +377,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             bodies[place].interior.velocities = vectors(&velocities);
         }
         loads.keep(&bodies, dt);
-        workspace.reference_touching = Touching { touches, parted, unfelt, rate: 0.0, begun, loads };
+        workspace.reference_touching =
+            Touching { touches, waiting, parted, unfelt, begun, loads, ..Touching::default() };
         Ok(())
     }
 
@@ -395,7 +410,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let walls = self.rigid_walls();
         let Engine { settings, state, workspace, among, kernels, .. } = self;
         let Workspace { active, boundary, field, neighbours, skin, reference_touching, .. } = workspace;
-        let Touching { touches, parted, .. } = reference_touching;
+        let Touching { touches, waiting, parted, approach: fastest, .. } = reference_touching;
         let grid = CommonGrid { active, boundary, lattice: &settings.lattice, kernels };
         if !settings.common.is_empty() {
             skin.follow(grid, &field.nodes, among.as_ref());
@@ -421,8 +436,15 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 Met::Obstacle(_) => store(touch.side, touch.energy()),
             }
         }
-        state.references.touching =
-            slip(&bodies, &obstacles, (touches, dt), &|touch| friction(settings, touch, count));
+        fastest.resize(bodies.len(), 0.0);
+        for touch in touches.iter().chain(&*waiting) {
+            let speed = approach(&bodies, &obstacles, touch);
+            touch.sides().iter().for_each(|&side| fastest[side] = fastest[side].max(speed));
+        }
+        let touching = &mut state.references.touching;
+        *touching = slip(&bodies, &obstacles, (touches, dt), &|touch| friction(settings, touch, count));
+        touching.extend(waiting.iter().map(|touch| touch.memory));
+        touching.sort_by_key(Memory::key);
         neighbours.moved((&bodies, &obstacles), dt);
         books::book(&mut workspace.reference_touches, &obstacles, (touches, parted, dt), count);
         if !state.walls.is_empty() {
@@ -481,7 +503,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             if self.state.references.layers[place].lingers == 0.0 {
                 return alone;
             }
-            alone.max(wave.max(own.wave) * (USUAL / SAFE).max(courant) / own.courant)
+            let landing = self.workspace.reference_touching.approach.get(place).map_or(0.0, |v| v / LANDING);
+            let waves = wave.max(own.wave) * (USUAL / SAFE).max(courant) / own.courant;
+            alone.max(waves).max(landing * courant)
         };
         let waves = (0..found.len()).map(of_body).fold(0.0, f64::max);
         // Both share the same w = 2/dt: squares add up.
@@ -489,7 +513,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let waves = waves.hypot(rocking * (USUAL / SAFE).max(courant));
         let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
         let speed = fastest.fold(0.0, |most: f64, v| most.max(v.dot(*v))).sqrt();
-        waves.max(speed)
+        // Two bodies come nearer by twice that.
+        waves.max(2.0 * speed)
     }
 
     /// Angular velocity of such a body, by its nodes: I w = L about the centre [rad/s].
@@ -513,6 +538,24 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         let inverse = inertia.inverse();
         [0, 1, 2].map(|i| (0..3).map(|j| inverse.0[i][j] * turn[j]).sum())
+    }
+
+    /// A point that a layer presses, too deep for it to keep the bodies apart.
+    fn pierced_reference(&self) -> Option<StepError> {
+        let Touching { touches, .. } = &self.workspace.reference_touching;
+        let depth = |touch: &Touch<D>| -touch.gap / self.state.references.nodes[touch.side].form.cell;
+        let touch = touches.iter().find(|touch| depth(touch) > PIERCED)?;
+        let [body, partner] = [touch.memory.body as usize, touch.memory.partner as usize];
+        Some(StepError::Pierced {
+            body: self.name_of(body).to_string(),
+            partner: match partner < self.state.bodies.len() {
+                true => format!("`{}`", self.name_of(partner)),
+                false => "a face of the domain".to_string(),
+            },
+            depth: depth(touch),
+            position: touch.at.space(),
+            time: self.state.time,
+        })
     }
 
     /// The first particle that has left the domain through an open face.

@@ -62,26 +62,32 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     found.map_or_else(|| contact::check(scene), Err)
 }
 
-/// Chooses where bodies are computed that do not say so, in a scene that leaves it open: on grids of their own
-/// where all of them are elastic and nothing asks for what these have not, such as a key of the common grid. It says
-/// why not.
+/// Chooses where bodies are computed that do not say so, in a scene that leaves it open: on grids of their own those that
+/// are elastic, on the common grid the others; all there where nothing is elastic, or where something asks for what the
+/// former have not, such as a key of the common grid. It says why.
 pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
     let open = |body: &Body| !body.is_rigid() && body.interior.is_none();
-    let Some(first) = scene.bodies.iter().position(open) else { return };
-    scene.discretization.interior = Interior::Reference;
-    let inelastic = || {
-        let mut open = (first..scene.bodies.len()).filter(|&body| open(&scene.bodies[body]));
-        let body = open.find(|&body| !stays_whole(material(scene, body)))?;
+    let open: Vec<usize> = (0..scene.bodies.len()).filter(|&body| open(&scene.bodies[body])).collect();
+    if open.is_empty() {
+        return;
+    }
+    let flowing: Vec<usize> =
+        open.iter().copied().filter(|&body| !stays_whole(material(scene, body))).collect();
+    let inelastic = flowing.first().map(|&body| {
         let law = material(scene, body).law.name();
-        Some(format!("`{}` is of a material that may flow or part, `{law}`", scene.bodies[body].name))
-    };
+        format!("`{}` is of a material that may flow or part, `{law}`", scene.bodies[body].name)
+    });
+    scene.discretization.interior = Interior::Reference;
+    flowing.iter().for_each(|&body| scene.bodies[body].interior = Some(Interior::Grid));
+    let refused = || check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found));
     let because = (wanted.map(|key| format!("`{key}` is written")))
-        .or_else(inelastic)
-        .or_else(|| check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found)))
+        .or_else(|| inelastic.clone().filter(|_| flowing.len() == open.len()))
+        .or_else(|| refused().map(|why| inelastic.unwrap_or(why)))
         .or_else(|| no_grid(scene));
     if let Some(why) = because {
         scene.discretization.interior = Interior::Grid;
         scene.discretization.because = Some(why);
+        flowing.iter().for_each(|&body| scene.bodies[body].interior = None);
     }
 }
 

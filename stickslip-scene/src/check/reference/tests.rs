@@ -175,6 +175,9 @@ fn a_point_cloud_has_no_undeformed_places() {
     assert_eq!(problem.key, "space.interior");
     assert!(problem.found.starts_with("a body of a point cloud, where `c"), "{problem}");
     assert_eq!(problem.allowed, "interior = \"grid\" in [space], and \"reference\" for other bodies");
+    let met = cloud.replace("law = 'none'", "between = ['a', 'b'], law = 'none'");
+    let problem = problems(&scene(&met, &[away])).expect_err("`a` may touch it");
+    assert!(problem.found.ends_with("that has interior = \"grid\" and is a point cloud"), "{problem}");
 }
 
 #[derive(Debug)]
@@ -244,34 +247,44 @@ fn rigid_bodies_have_no_interior() {
 }
 
 #[test]
-fn such_bodies_meet_each_other_and_rigid_ones() {
+fn such_bodies_meet_each_other_and_all_others() {
     let both = ("bodies[1].interior", "reference");
     assert_eq!(problems(&scene("", &[both])), Ok(()));
     assert_eq!(problems(&scene("contact = [{ friction = 0.5 }]", &[both])), Ok(()));
-    assert_eq!(problems(&scene(APART, &[])), Ok(()));
+    assert_eq!(problems(&scene("", &[])), Ok(()));
+    assert_eq!(problems(&scene("contact = [{ friction = 0.5 }]", &[])), Ok(()));
     let free = ("bodies[1].rigid", "{ free = {} }");
     assert_eq!(problems(&scene("contact = [{ friction = 0.5 }]", &[free])), Ok(()));
-    let meet = "bodies with interior \"reference\" meet each other, and rigid bodies: ";
-    for (top, set, expected) in [
+}
+
+/// What of a body on the grid has no surface that such a body could find.
+#[test]
+fn some_bodies_on_the_grid_cannot_meet_such_bodies() {
+    let periodic = "{ min = [-0.5, -2], max = [3.5, 2], x_min = 'periodic', x_max = 'periodic' }";
+    let soft = "{ density = 1, neo_hookean = { bulk_modulus = 1e6, shear_modulus = 0 } }";
+    for (top, set, is, allowed) in [
         (
             "",
-            &[][..],
-            format!(
-                "bodies[0].interior: \"reference\" of `a`, which may touch `b`, as no rule names the pair, and \
-                 that has interior = \"grid\"; allowed: {meet}interior = \"reference\" for `b` too, or \
-                 \"grid\" for both"
-            ),
+            &[("time.stress_update", "last")][..],
+            "is strained by time.stress_update",
+            "\"modified-last\", the default",
         ),
+        ("", &[("space.domain", periodic)], "lies between periodic faces", "open, mirror or fixed faces"),
         (
-            "contact = [{ friction = 0.5 }]",
-            &[("space.interior", "reference"), ("bodies[1].interior", "grid")],
-            format!(
-                "bodies[0].interior: \"reference\" of `a`, which may touch `b`, by contact[0], and that has \
-                 interior = \"grid\"; allowed: {meet}interior = \"reference\" for `b` too, or \"grid\" for both"
-            ),
+            &format!("materials.glass = {GLASS}"),
+            &[("bodies[1].material", "glass")],
+            "may part by its law",
+            "a law that leaves material in one piece",
         ),
+        (&format!("materials.water = {soft}"), &[("bodies[1].material", "water")], "is a fluid", "a solid"),
     ] {
-        assert_eq!(refused(&scene(top, set)), expected);
+        let expected = format!(
+            "bodies[0].interior: \"reference\" of `a`, which may touch `b`, as no rule names the pair; that has interior = \
+             \"grid\" and {is}; allowed: {allowed}; or the same interior for both"
+        );
+        let said = refused(&scene(top, set));
+        assert_eq!(said, expected, "{top}");
+        assert_eq!(problems(&scene(&format!("{APART}\n{top}"), set)), Ok(()), "{top}");
     }
 }
 
@@ -323,7 +336,7 @@ fn friction_remembers_pressure_on_such_bodies_only() {
     for between in ["['b', 'plate']", "['b', 'any']"] {
         let grid = refused(&scene(&memory(between), &[("bodies[0].interior", "grid")]));
         let start = "contact[0].friction_memory_length: a memory of friction between `";
-        let end = "allowed: one between bodies with interior = \"reference\", or such a body and a rigid one";
+        let end = "allowed: one of whose bodies one has interior = \"reference\"";
         assert!(grid.starts_with(start) && grid.ends_with(end), "{grid}");
     }
 }
@@ -365,6 +378,11 @@ fn scenes_that_leave_it_open_have_what_fits_their_bodies() {
     let time = "time.end = 1";
     let own = chosen(&format!("{time}\n{}", disk("a", "rubber", "")));
     assert_eq!(own, (Interior::Reference, None));
+    let clay = chosen(&format!("{time}\n{}{}", disk("a", "rubber", ""), disk("b", "clay", "")));
+    assert_eq!(clay, (Interior::Reference, None), "a body that flows is on the common grid beside it");
+    let water = chosen(&format!("{time}\n{}{}", disk("a", "rubber", ""), disk("b", "water", "")));
+    let why = "`b` is of a material that may flow or part, `neo_hookean`";
+    assert_eq!(water, (Interior::Grid, Some(why.to_string())), "a fluid has no surface that it could find");
     let rigid = disk("b", "clay", "rigid = {}");
     assert_eq!(chosen(&format!("{time}\n{}{rigid}", disk("a", "rubber", ""))).0, Interior::Reference);
     let [far, near, beyond] = ["-2", "-1", "-0.99"].map(|low| {

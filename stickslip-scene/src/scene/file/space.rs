@@ -117,7 +117,7 @@ impl Choice for SceneInterior {
         (
             "auto",
             SceneInterior::Auto,
-            "On grids of their own where all that deforms is elastic and nothing asks for the common grid, else there.",
+            "Elastic bodies on grids of their own, others on the common grid; all there where something asks for it.",
         ),
     ];
 }
