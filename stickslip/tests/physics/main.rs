@@ -62,6 +62,7 @@ mod servo_walls;
 mod silo;
 mod spinning_disk;
 mod springs;
+mod stacks;
 mod starts;
 mod stretched;
 mod struck_bar;

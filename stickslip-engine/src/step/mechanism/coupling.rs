@@ -118,7 +118,8 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             settled = self.iterate(bodies, mechanism, &touched, listed);
             // Those that break loose have less friction from then on.
             for _ in 0..MAX_BREAKS {
-                if !self.judge_slip(bodies, mechanism) {
+                // With velocities that are not found yet the next step takes it up.
+                if !self.judge_slip(bodies, mechanism) || !settled && packed(mechanism.touches.len()) {
                     break;
                 }
                 settled = self.iterate(bodies, mechanism, &touched, listed);

@@ -13,6 +13,7 @@
 //! round-off, and joints do not drift.
 
 mod conjugate;
+mod corners;
 mod coupling;
 mod direct;
 mod joint;

@@ -1,6 +1,7 @@
 //! Where the exact surfaces of rigid bodies are near each other.
 
 use super::super::build::whole;
+use super::corners::{corners, is_polygon};
 use crate::body::Body;
 use crate::contact::Rules;
 use crate::geometry::{Bounds, Shape, SignedDistance};
@@ -18,8 +19,13 @@ const MOST_POINTS: usize = 200_000;
 const AHEAD: f64 = 1.5;
 /// Points whose distances differ by less than this touch alike, over the distance between points.
 const ALIKE: f64 = 1e-3;
+/// Faces rest on each other that are this far apart or overlap by so much, over the distance between points. Would each
+/// overlap be taken away, a wall in which round-off makes some would have to move against all that it bears.
+const SLACK: f64 = 1e-5;
 /// The cosine of the angle within which normals are those of one flat contact.
 const FLAT: f64 = 0.9998;
+/// The cosine of the angle within which normals at one place are those of one contact.
+const ASIDE: f64 = 0.7;
 /// Steps of the search for the nearest point at most, and where it ends, over the distance between points.
 const MAX_STEPS: usize = 40;
 const FOUND: f64 = 1e-9;
@@ -43,6 +49,10 @@ struct RigidSurface {
     points: Vec<[f64; 3]>,
     /// The area of the piece that each stands for [m^2], in the plane its length [m].
     areas: Vec<f64>,
+    /// Points beside the corners of its faces.
+    corners: Vec<[f64; 3]>,
+    /// Whether it meets others there or at theirs: a polygon in the plane.
+    is_polygon: bool,
     /// A ball around the body where it is at the start; without bounds the radius is infinite.
     center: [f64; 3],
     reach: f64,
@@ -92,6 +102,8 @@ pub struct RigidContact {
     pub normal: [f64; 3],
     /// Distance between the surfaces, negative where they overlap [m].
     pub gap: f64,
+    /// Surfaces no farther apart than this, and that overlap by no more, rest on each other [m].
+    pub slack: f64,
     /// Its share of the area over which they touch, where that counts [m^2], in the plane per metre of depth [m].
     pub area: f64,
 }
@@ -117,6 +129,8 @@ impl RigidSurfaces {
                     body: index,
                     points: Vec::new(),
                     areas: Vec::new(),
+                    corners: Vec::new(),
+                    is_polygon: false,
                     center: [0.0; 3],
                     reach: f64::INFINITY,
                     half: [f64::INFINITY; 3],
@@ -143,7 +157,20 @@ impl RigidSurfaces {
             };
             let whole = whole::<D>(scene, index).bounds();
             let half = whole.map_or([f64::INFINITY; 3], |whole| whole.size().map(|size| 0.5 * size));
-            RigidSurface { body: index, points, areas, center, reach, half, spacing, ball }
+            let corners = corners(&body.shape, spacing, axes);
+            let is_polygon = axes == 2 && is_polygon(&body.shape);
+            RigidSurface {
+                body: index,
+                points,
+                areas,
+                corners,
+                is_polygon,
+                center,
+                reach,
+                half,
+                spacing,
+                ball,
+            }
         };
         let rigid = scene.bodies.iter().enumerate().filter(|(_, body)| body.is_rigid());
         let joined = (scene.joints.iter().filter(|joint| joint.holds()))
@@ -293,6 +320,7 @@ impl RigidSurfaces {
             return;
         }
         let bodies = pair.map(|placed| placed.surface.body);
+        let slack = SLACK * a.surface.spacing.min(b.surface.spacing);
         let mut near = Vec::new();
         for (one, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             // Where the other one is as this one sees it, so that far points need no turning.
@@ -305,8 +333,9 @@ impl RigidSurfaces {
                 let across = |k: usize| (0..3).map(|j| turn.0[k][j] * off[j]).sum::<f64>();
                 off.dot(off) > reach * reach || (0..D).any(|k| across(k).abs() > box_around[k])
             };
+            let RigidSurface { points, areas, corners, .. } = one.surface;
             let touches = |number: usize, last: &mut ([f64; 3], f64)| {
-                let point = one.surface.points[number];
+                let point = points.get(number).copied().unwrap_or_else(|| corners[number - points.len()]);
                 let off = Vector(point) - Vector(seen);
                 // What is near a point that is far away is far away.
                 let way = (Vector(point) - Vector(last.0)).norm();
@@ -323,9 +352,17 @@ impl RigidSurfaces {
                 if counts && level.distance.abs() <= bond && faces() {
                     let normal = Vector(level.gradient).direction()?;
                     let middle = (Vector(place) - normal * (0.5 * level.distance)).0;
-                    let (normal, area) = (normal.0.map(|n| sign * n), one.surface.areas[number]);
+                    let (normal, area) = (normal.0.map(|n| sign * n), areas[number]);
                     let gap = level.distance;
-                    return Some(RigidContact { bodies, away: b.away, place: middle, normal, gap, area });
+                    return Some(RigidContact {
+                        bodies,
+                        away: b.away,
+                        place: middle,
+                        normal,
+                        gap,
+                        slack,
+                        area,
+                    });
                 }
                 let (place, level) = one.nearest(place, other)?;
                 let normal = Vector(level.gradient).direction()?;
@@ -338,13 +375,15 @@ impl RigidSurfaces {
                 let place = (place - normal * (0.5 * level.distance)).0;
                 let normal = normal.0.map(|n| sign * n);
                 let gap = level.distance;
-                let contact = RigidContact { bodies, away: b.away, place, normal, gap, area: 0.0 };
+                let contact = RigidContact { bodies, away: b.away, place, normal, gap, slack, area: 0.0 };
                 (gap <= margin).then_some(contact)
             };
-            let count = one.surface.points.len();
+            // What resists by its area has the points that stand for it.
+            let first = if one.surface.is_polygon && !bonds { points.len() } else { 0 };
+            let count = points.len() + if bonds { 0 } else { corners.len() } - first;
             let parts = by_parts(count, PART, |part| {
                 let mut last = ([0.0; 3], 0.0);
-                part.filter_map(|number| touches(number, &mut last)).collect()
+                part.filter_map(|number| touches(first + number, &mut last)).collect()
             });
             near.extend(parts.into_iter().flat_map(|part: Vec<_>| part));
         }
@@ -378,7 +417,7 @@ fn between_balls<T, const D: usize>(
     // A disk is as high as its centre of mass.
     let place = std::array::from_fn(|k| if k < D { middle[k] } else { b.motion.center[k] });
     let bodies = [a, b].map(|placed| placed.surface.body);
-    Some(RigidContact { bodies, away: b.away, place, normal: normal.0, gap, area: 0.0 })
+    Some(RigidContact { bodies, away: b.away, place, normal: normal.0, gap, slack: 0.0, area: 0.0 })
 }
 
 /// A part of x in which a surface, or an image of it, is.
@@ -492,7 +531,34 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
                 break;
             }
         }
+        // Not even where it goes on by round-off.
+        if let Some(distance) = self.faces(other, first, (at, &level)) {
+            return Some((first, SignedDistance { distance, ..level }));
+        }
         (!goes_on(at, slope)).then_some((at, level))
+    }
+
+    /// How far a point of its surface is from `other`, where both are flat from there to the place that was found nearest
+    /// and nearly parallel. Such a point stays where it is, or round-off would choose another one in each step, and what
+    /// it bears would not be found again.
+    fn faces(
+        &self,
+        other: &PlacedSurface<T, D>,
+        point: Vector<f64, 3>,
+        (at, level): (Vector<f64, 3>, &SignedDistance),
+    ) -> Option<f64> {
+        let spacing = self.surface.spacing;
+        let normal = Vector(level.gradient);
+        let plane = |place: Vector<f64, 3>| level.distance + (place - at).dot(normal);
+        let (way, distance) = (point - at, plane(point));
+        let tilted = (distance - level.distance).abs() * 2.0 * self.reach > ALIKE * spacing * way.norm();
+        if tilted || other.level(point.0).distance > distance + ALIKE * spacing {
+            return None;
+        }
+        let middle = at + way * 0.5;
+        let bent =
+            self.level(middle.0).distance.abs().max((other.level(middle.0).distance - plane(middle)).abs());
+        (bent <= FOUND * spacing).then_some(distance)
     }
 }
 
@@ -518,6 +584,14 @@ fn reduce(mut near: Vec<RigidContact>, alike: f64, dimension: usize, kept: &mut 
         take_rim(&touching, &around, alike, &mut chosen);
         take_rim(&apart, &around, alike, &mut chosen);
         chosen[before..].iter_mut().for_each(|contact| contact.area = 0.0);
+        // Where faces meet, the way from corner to corner is round-off.
+        near.retain(|contact| {
+            let beside = |other: &RigidContact| {
+                (Vector(other.place) - Vector(contact.place)).norm() <= alike
+                    && Vector(other.normal).dot(Vector(contact.normal)) > ASIDE
+            };
+            contact.gap.abs() > alike || !chosen.iter().any(beside)
+        });
         kept.extend(chosen);
     }
 }

@@ -43,7 +43,7 @@ pub fn least_slip(touches: &[Touch]) -> f64 {
 /// slip:      l_t  = mu(s) l_n + c A dt + eta A dt |v_t|,   against the slip
 /// pull:      l_n >= -a A dt   where n.v >= max(w, 0)
 /// ```
-/// w = -gap / dt: the surfaces do not overlap after the step; where they would, and approach each other at the speed
+/// w = -gap / dt, without the slack that faces have: the surfaces do not overlap after the step; where they would, and approach each other at the speed
 /// v^n, w = e v^n with the coefficient of restitution e (Newton; Moreau 1988). Those that overlap part slowly.
 /// mu(s), c, a, eta: see [`Friction`]; A: the contact's share of the area over which they touch. Surfaces that stuck at
 /// the end of the step before bear the static coefficient, and so do those that come to rest; once they slip it is
@@ -125,14 +125,15 @@ impl Touch {
         let slip = (relative + Vector(contact.normal) * approach).norm();
         let law = rule.friction.double();
         let exposure = contact.area * dt;
+        let gap = (contact.gap.abs() - contact.slack).max(0.0).copysign(contact.gap);
         let bounces = approach * dt > contact.gap && approach > 0.0 && rule.restitution > 0.0;
         let parting = if bounces {
             rule.restitution * approach
-        } else if contact.gap > 0.0 {
-            -contact.gap / dt
+        } else if gap > 0.0 {
+            -gap / dt
         } else {
             // No faster than what falls by as much, or an overlap would be a store of energy.
-            (RECOVERY * -contact.gap / dt).min((-contact.gap * gravity).sqrt())
+            (RECOVERY * -gap / dt).min((-gap * gravity).sqrt())
         };
         Touch {
             contact,

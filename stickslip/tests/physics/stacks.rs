@@ -1,0 +1,71 @@
+//! Stacks of free rigid bodies stand.
+//!
+//! Set-up: a tower of 50 boxes, 0.2 m by 0.1 m, whose sides are flush, on a rigid floor; and a wall of 100 such bricks in
+//! ten courses, side by side without a gap, with friction.
+//!
+//! Expected: nothing moves, as every centre of mass lies above the middle of what bears it. Faces rest on each other
+//! within 1e-5 of the distance between points of their surfaces, 1e-7 m here, so boxes may sink by that at each face;
+//! kinetic energy is that of what sweeps leave over, 1e-6 of the speed that gravity gives in a step under the whole load.
+
+use crate::trial::{distance, run_to, start};
+use stickslip::door::Simulation;
+
+fn stack(bodies: &str) -> Box<dyn Simulation> {
+    start(&format!(
+        r#"
+        gravity = [0, -9.81]
+        space = {{ dimension = "plane-strain", cell = 0.02 }}
+        time = {{ end = 3, max_step = 0.0018 }}
+        materials.stone = {{ density = 2000, hypoelastic = {{ young_modulus = 1e7, poisson_ratio = 0.2 }} }}
+        [[bodies]]
+        name = "floor"
+        material = "stone"
+        rigid = {{}}
+        shape.half_space = {{ point = [0, 0], normal = [0, 1] }}
+        {bodies}
+        material = "stone"
+        rigid.free = {{}}
+        [[contact]]
+        friction = 0.5
+        "#
+    ))
+}
+
+/// Runs for 0.6 s; gives how far the body moved that moved most [m], and the kinetic energy then [J].
+fn moved(simulation: &mut dyn Simulation) -> [f64; 2] {
+    let begun = simulation.bodies();
+    run_to(simulation, 0.6, |_| {});
+    let after = simulation.bodies();
+    let far = begun.iter().zip(&after).skip(1).map(|(a, b)| distance(a.position, b.position));
+    let (far, ledger) = (far.fold(0.0, f64::max), simulation.ledger());
+    println!("moved by {far:.1e} m, {:.1e} J, unsettled {}", ledger.kinetic, ledger.unsettled_nodes);
+    [far, ledger.kinetic]
+}
+
+#[test]
+fn a_tower_of_fifty_boxes_stands() {
+    let mut tower = stack(
+        r#"[[bodies]]
+        name = "box {i}"
+        repeat = { i = 50 }
+        shape.box = { min = [-0.1, "0.1 * i"], max = [0.1, "0.1 * (i + 1)"] }"#,
+    );
+    let [far, kinetic] = moved(&mut *tower);
+    assert!(far < 50.0 * 1e-7, "{far}");
+    assert!(kinetic < 1e-6, "{kinetic}");
+    // The first step begins without forces.
+    assert!(tower.ledger().unsettled_nodes <= 1);
+}
+
+#[test]
+fn a_wall_of_bricks_stands() {
+    let mut wall = stack(
+        r#"[[bodies]]
+        name = "brick {i} {j}"
+        repeat = { i = 10, j = 10 }
+        shape.box = { min = ["0.2 * i + 0.1 * mod(j, 2)", "0.1 * j"], max = ["0.2 * i + 0.1 * mod(j, 2) + 0.2", "0.1 * (j + 1)"] }"#,
+    );
+    let [far, kinetic] = moved(&mut *wall);
+    assert!(far < 10.0 * 1e-6, "{far}");
+    assert!(kinetic < 1e-6, "{kinetic}");
+}
