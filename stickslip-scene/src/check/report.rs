@@ -57,6 +57,8 @@ pub struct Report {
     pub particles: usize,
     /// Places at which free rigid bodies touch others at the start, estimated.
     pub rigid_contacts: usize,
+    /// What these cost in a step, in particles.
+    pub contacts_as_particles: f64,
     /// Memory of particles and grid, estimated [bytes].
     pub memory: f64,
     /// Memory beside it while a checkpoint is written: a copy of the particles, estimated [bytes].
@@ -125,6 +127,7 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let time_step = time_step(scene, &extents);
     let Estimates { found: contacts, unknown: contacts_unknown } = estimates(scene, &extents);
+    let places = rigid_contacts(scene, &boxes);
     let report = Report {
         title: scene.title.clone(),
         dimension: scene.dimension,
@@ -139,7 +142,8 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
             .collect(),
         materials: of_materials(scene),
         particles: counts.iter().sum(),
-        rigid_contacts: rigid_contacts(scene, &boxes),
+        rigid_contacts: places.len(),
+        contacts_as_particles: places.iter().sum(),
         memory: footprint.memory(scene, &counts),
         checkpoint_memory: footprint.copy(scene, &counts),
         end: scene.time.end,
@@ -177,7 +181,7 @@ impl Report {
     pub fn on(self, machine: MachineSpeed) -> Self {
         let rate = machine.particle_steps_per_second;
         // Contacts are solved for by one core.
-        let contacts = self.rigid_contacts as f64 * PARTICLES_A_CONTACT / rate;
+        let contacts = self.contacts_as_particles / rate;
         let gridless = self.loads.is_empty() && self.bodies.iter().all(|body| body.rigid);
         let particles = self.particles as f64 * if gridless { WITHOUT_GRID } else { 1.0 };
         let a_step = contacts + particles / (rate * machine.cores as f64);
@@ -224,19 +228,27 @@ fn warnings(
         .collect()
 }
 
-/// A place where rigid bodies touch costs as much in a step as so many particles: half of it where they rest, and twice
-/// or more where they fall.
+/// A place where balls touch costs as much in a step as so many particles: half of it where they rest, and twice or more
+/// where they fall. One of a face costs so many where nothing moves, and so many where something strikes a stack: then
+/// nothing is found by few sweeps.
 const PARTICLES_A_CONTACT: f64 = 10.0;
+const AT_REST: f64 = 2.5;
+const STRUCK: f64 = 25.0;
 /// What a particle costs of that where nothing deforms, and a step makes no grid.
 const WITHOUT_GRID: f64 = 0.2;
 /// Places at which two bodies touch on a face, in the plane and in space.
 const PLACES: [usize; 2] = [3, 5];
 
-/// At how many places free rigid bodies touch others where they begin: balls at one.
-fn rigid_contacts(scene: &Scene, boxes: &[Bounds]) -> usize {
+/// The places at which free rigid bodies touch others where they begin, each with its cost in particles: balls at one.
+fn rigid_contacts(scene: &Scene, boxes: &[Bounds]) -> Vec<f64> {
     if scene.bodies.iter().all(|body| body.as_free_rigid().is_none()) {
-        return 0;
+        return Vec::new();
     }
+    let moves = |body: &Body| {
+        let spins = body.as_free_rigid().is_some_and(|free| free.spin != [0.0; 3]);
+        body.is_rigid() && (spins || starting_velocity(body) != [0.0; 3])
+    };
+    let of_face = if scene.bodies.iter().any(moves) { STRUCK } else { AT_REST };
     let joined = scene.joined_pairs();
     let touches = |[a, b]: [usize; 2]| {
         let both = [a, b].map(|body| &scene.bodies[body]);
@@ -251,10 +263,12 @@ fn rigid_contacts(scene: &Scene, boxes: &[Bounds]) -> usize {
         both.iter().all(|body| body.is_rigid()) && scene.may_touch([a, b], &joined) && near()
     };
     let is_ball = |&body: &usize| matches!(scene.bodies[body].shape, Shape::Ball { .. });
-    let places =
-        |pair: [usize; 2]| if pair.iter().any(is_ball) { 1 } else { PLACES[scene.dimension.axes() - 2] };
+    let places = |pair: [usize; 2]| match pair.iter().any(is_ball) {
+        true => vec![PARTICLES_A_CONTACT],
+        false => vec![of_face; PLACES[scene.dimension.axes() - 2]],
+    };
     let near = pairs_within(boxes, TOUCH * scene.discretization.cell);
-    near.into_iter().filter(|pair| touches(*pair)).map(places).sum()
+    near.into_iter().filter(|pair| touches(*pair)).flat_map(places).collect()
 }
 
 /// Boxes that are less than this apart touch [cells].
@@ -433,8 +447,16 @@ mod tests {
             let machine = MachineSpeed { particle_steps_per_second: 1e6, cores };
             report.clone().on(machine).wall_time / report.steps as f64
         });
-        assert!((one - (90.0 + 0.2 * report.particles as f64) / 1e6).abs() < 1e-12, "{one}");
-        assert!((eight - (90.0 + 0.025 * report.particles as f64) / 1e6).abs() < 1e-12, "{eight}");
+        let particles = report.particles as f64;
+        assert!((one - (9.0 * AT_REST + 0.2 * particles) / 1e6).abs() < 1e-12, "{one}");
+        assert!((eight - (9.0 * AT_REST + 0.025 * particles) / 1e6).abs() < 1e-12, "{eight}");
+        // One that falls onto the others makes them move.
+        let struck = text.replace("rigid.free = {}", "velocity = [0, -1], rigid.free = {}");
+        let scene = crate::scene::parse("tower.toml", &struck, &[]).expect("a scene").scene;
+        assert_eq!(
+            crate::check::tests::report(&scene).expect("no problem").contacts_as_particles,
+            9.0 * STRUCK
+        );
     }
 
     #[test]

@@ -56,7 +56,7 @@ impl Display for Report {
             let contacts = self.rigid_contacts;
             writeln!(
                 f,
-                "             with {contacts} contacts of rigid bodies: less where these rest, more where they fall"
+                "             with {contacts} contacts of rigid bodies: less once these rest, more where they fall"
             )?;
         }
         self.write_loads(f)?;
