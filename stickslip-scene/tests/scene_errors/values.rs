@@ -51,6 +51,16 @@ fn values_out_of_range() {
                 "radius = 1 }\n[[contact]]\nfriction_memory_length = 1\nfriction_memory_speed = 0",
                 "18:25: contact[0].friction_memory_speed: found 0; allowed: a velocity [m/s] above 0, like \"5 m/s\"",
             ),
+            (
+                "radius = \"0.4 m\" }",
+                "radius = 1 }\nspin = [0, 0, \"2 kHz\"]",
+                "16:15: bodies[0].spin[2]: found \"2 kHz\", of which nobody knows whether it counts turns or radians; allowed: \"rad/s\", \"rpm\" or \"1/s\"",
+            ),
+            (
+                "radius = \"0.4 m\" }",
+                "radius = 1 }\n[[contact]]\nfriction = \"30 deg\"",
+                "17:12: contact[0].friction: found \"30 deg\"; allowed: a coefficient: the tangent of an angle, \"tan(30 deg)\"",
+            ),
             ("\"0.1 m\"", "0", "3:8: space.cell: found 0; allowed: a length [m] above 0, like \"0.4 m\""),
             (
                 "\"0.4 m\"",

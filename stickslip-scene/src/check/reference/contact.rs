@@ -1,8 +1,7 @@
 //! Whom bodies with interior "reference" may touch, and by which rules.
 
-use super::{interior_key, is_reference, is_solid, material};
+use super::{interior_key, is_reference, is_solid, material, may_part};
 use crate::geometry::{Curved, Shape};
-use crate::material::Material;
 use crate::scene::{ContactLaw, ContactRule, Problem, RuleNames, Scene, StressUpdate};
 use std::collections::BTreeMap;
 
@@ -129,7 +128,7 @@ const ON_GRID: &[Unlike] = &[
         "a shape that has a surface",
     ),
     (
-        |scene, body| matches!(material(scene, body).law, Material::Damage(_)),
+        |scene, body| may_part(material(scene, body)),
         "may part by its law",
         "a law that leaves material in one piece",
     ),

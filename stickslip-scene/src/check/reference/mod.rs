@@ -79,7 +79,12 @@ pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
     });
     scene.discretization.interior = Interior::Reference;
     flowing.iter().for_each(|&body| scene.bodies[body].interior = Some(Interior::Grid));
-    let refused = || check(scene).err().map(|problem| format!("`{}` is {}", problem.key, problem.found));
+    // Nobody has written the interior that the problem speaks of.
+    let refused = || {
+        let problem = check(scene).err()?;
+        let found = problem.found.split(", where `").next().unwrap_or_default();
+        Some(format!("`{}` is {found}", problem.key))
+    };
     let because = (wanted.map(|key| format!("`{key}` is written")))
         .or_else(|| inelastic.clone().filter(|_| flowing.len() == open.len()))
         .or_else(|| refused().map(|why| inelastic.unwrap_or(why)))
@@ -126,6 +131,11 @@ fn stays_whole(material: &NamedMaterial) -> bool {
     is_solid(material)
         && material.law.trusts_deformation()
         && !matches!(material.law, Material::Damage(_) | Material::Custom(_))
+}
+
+/// Whether a law takes material apart.
+fn may_part(material: &NamedMaterial) -> bool {
+    matches!(material.law, Material::Damage(_))
 }
 
 /// Whether a material resists shear.
@@ -210,7 +220,7 @@ fn law_over_arrays(scene: &Scene, body: usize) -> Option<Problem> {
 
 fn damage(scene: &Scene, body: usize) -> Option<Problem> {
     let allowed = "a law that leaves material in one piece";
-    matches!(material(scene, body).law, Material::Damage(_))
+    may_part(material(scene, body))
         .then(|| problem(scene, body, law_key(scene, body), "a law by which material parts", allowed))
 }
 

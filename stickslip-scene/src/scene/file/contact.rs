@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::quantity::{
-    Duration, Length, Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity,
+    Duration, Length, Measure, Pressure, QuantityInput, Ratio, SurfaceViscosity, Velocity, plain_unit,
 };
 use super::read::{Read, table};
 use super::text::{Choice, Text, Word};
@@ -158,6 +158,13 @@ impl Contact {
             for (side, text) in between.iter_mut().zip(pair) {
                 let (name, _) = text.names_of(context, "the name of a body or a material, or any", names)?;
                 *side = (name != "any").then_some(name);
+            }
+        }
+        for coefficient in [&self.friction, &self.kinetic_friction].into_iter().flatten() {
+            if plain_unit(coefficient.node()).is_some_and(|unit| matches!(unit, "deg" | "rad")) {
+                return Err(coefficient
+                    .node()
+                    .fault("a coefficient: the tangent of an angle, \"tan(30 deg)\""));
             }
         }
         let friction = self.friction.as_ref().map_or(Ok(default.friction), |friction| {

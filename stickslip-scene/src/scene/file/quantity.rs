@@ -153,6 +153,13 @@ impl<M: Measure> QuantityInput<M> {
     }
 }
 
+/// The unit of a plain quantity: one number and one unit behind it.
+pub fn plain_unit(node: &DocumentNode) -> Option<&str> {
+    let Value::Text(text) = &node.value else { return None };
+    let unit = text.trim().trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c)).trim();
+    (!unit.is_empty() && unit.chars().all(char::is_alphabetic)).then_some(unit)
+}
+
 /// What a number or formula says, if it has the dimension `wanted`; `allowed` says so in words.
 pub fn evaluate(
     node: &DocumentNode,
@@ -160,6 +167,12 @@ pub fn evaluate(
     allowed: &str,
     (context, variation): (&Context, Dependence),
 ) -> Result<Expression, Fault> {
+    if wanted == Powers::from(AngularVelocity::POWERS)
+        && plain_unit(node).is_some_and(|unit| unit.ends_with("Hz"))
+    {
+        let found = format!("{}, of which nobody knows whether it counts turns or radians", node.found());
+        return Err(Fault::new(&node.key(), found, "\"rad/s\", \"rpm\" or \"1/s\"").at(node.span()));
+    }
     let formula = context.parameters.formula(node, variation, allowed)?;
     if formula.kind.fits(wanted) {
         return Ok(formula.expression);
