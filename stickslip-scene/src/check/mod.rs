@@ -31,6 +31,7 @@ mod settings;
 mod shapes;
 mod soil;
 mod springs;
+mod supports;
 mod table;
 mod thickness;
 mod touch;

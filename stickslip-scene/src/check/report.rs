@@ -10,7 +10,7 @@ use super::table::short;
 use super::warning::{NOT_RESOLVED, Warning, and_more, few};
 use super::{
     dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules,
-    soil, thickness,
+    soil, supports, thickness,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
@@ -220,6 +220,7 @@ fn warnings(
         .chain(locking::bending(scene))
         .chain(soil::warning(scene))
         .chain(loads::warning(scene, loads))
+        .chain(few(supports::warnings(scene)))
         .chain(pulses::warning(scene, time_step))
         .chain(thin_rigid_bodies(scene))
         .chain(mass::warning(scene, extents))
