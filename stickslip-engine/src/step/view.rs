@@ -35,7 +35,6 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// A particle as others see it.
 /// A body of prescribed motion as it moves at `time`, where its particles have the mean over the last step. It turns
 /// about an axis that stays, so its inertia is the same.
 fn as_prescribed(state: BodyState, motion: &RigidMotion, time: f64) -> BodyState {
@@ -57,6 +56,7 @@ fn as_prescribed(state: BodyState, motion: &RigidMotion, time: f64) -> BodyState
     }
 }
 
+/// A particle as others see it.
 fn shown<T: Real, const D: usize>(particle: &Particle<T, D>) -> ParticleView {
     ParticleView {
         number: particle.number,

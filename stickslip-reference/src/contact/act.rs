@@ -21,6 +21,34 @@ pub fn begin<const D: usize>(
     }
 }
 
+/// Lets the layers of points on bodies whose surface is found by what is around them feel a jump of it no sooner than
+/// other depths: particles come and go there, and no work made the gap jump.
+pub fn follow<const D: usize>(
+    bodies: &[Deforming<'_, D>],
+    obstacles: &[&dyn Obstacle],
+    touches: &mut [Touch<D>],
+    dt: f64,
+) {
+    let jumps = |touch: &Touch<D>| match touch.met {
+        Met::Obstacle(r) => touch.memory.age > 0.0 && !obstacles[r].is_tracked(),
+        Met::Deforming(..) => false,
+    };
+    for touch in touches.iter_mut().filter(|touch| jumps(touch)) {
+        let [before, deeper] = touch.memory.felt;
+        let jitter = JITTER * bodies[touch.side].interior.form.cell;
+        let explained = before + deeper + approach(bodies, obstacles, touch) * dt + jitter;
+        let unexplained = -touch.gap - explained;
+        if unexplained > 0.0 {
+            touch.memory.unfelt += unexplained;
+            touch.memory.patience = 1.0;
+            touch.gap += unexplained;
+        }
+    }
+}
+
+/// What of a cell the surface of a body may come nearer in a step by the particles that say where it is.
+const JITTER: f64 = 0.005;
+
 /// Adds the pressure and the friction of all points that touch to the forces on the nodes: f_I += N_I A (p n + tau), of
 /// the partner the opposite. What of the stored slip friction does not bear, slips, and takes work.
 pub fn press<const D: usize>(

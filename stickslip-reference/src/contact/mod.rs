@@ -25,7 +25,7 @@ mod near;
 #[cfg(test)]
 mod tests;
 
-pub use act::{approach, begin, press, slip};
+pub use act::{approach, begin, follow, press, slip};
 pub use friction::Friction;
 pub use images::PeriodLengths;
 pub use look::{Seen, look};

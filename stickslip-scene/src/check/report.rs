@@ -172,7 +172,15 @@ fn interior(scene: &Scene) -> Option<String> {
         (0, _, Some(why)) => Some(format!("the common grid, as {why}")),
         (0, _, None) => None,
         (_, 0, _) => Some("bodies that deform on grids of their own".to_string()),
-        (own, common, _) => Some(format!("{own} bodies on grids of their own, {common} on the common grid")),
+        (..) => {
+            let named = |of: Interior| {
+                let deforms = |&body: &usize| !scene.bodies[body].is_rigid() && scene.interior(body) == of;
+                let bodies: Vec<usize> = (0..scene.bodies.len()).filter(deforms).collect();
+                and_more(&format!("`{}`", scene.bodies[bodies[0]].name), bodies.len() - 1)
+            };
+            let [own, common] = [Interior::Reference, Interior::Grid].map(named);
+            Some(format!("{own} on grids of their own, {common} on the common grid"))
+        }
     }
 }
 

@@ -7,8 +7,7 @@ use crate::tensor::Vector;
 const AROUND: f64 = 1e-3;
 /// A corner is on the surface if it is no farther off than this, over the same.
 const ON: f64 = 1e-9;
-/// The directions in which one looks, in each quarter of a turn; fewer than half of a turn, or of all of space, are
-/// inside where a corner stands out.
+/// Fewer than this of the directions in which one looks are inside where a corner stands out [-].
 const STANDS_OUT: f64 = 0.45;
 
 /// How far from a corner the points of its faces are, over the same: the corner itself is on several faces at once.
@@ -40,11 +39,20 @@ pub fn corners(shape: &Shape, spacing: f64, axes: usize) -> Vec<[f64; 3]> {
     .collect()
 }
 
-/// Whether a shape is a polygon in the plane: wherever it meets another one, a corner of either is.
-pub fn is_polygon(shape: &Shape) -> bool {
+/// Whether a shape is a box.
+pub fn is_box(shape: &Shape) -> bool {
     match shape {
-        Shape::Box { .. } | Shape::Polygon { .. } => true,
-        Shape::Rotated { shape, .. } => is_polygon(shape),
+        Shape::Box { .. } => true,
+        Shape::Rotated { shape, .. } => is_box(shape),
+        _ => false,
+    }
+}
+
+/// Whether a shape is a half-space.
+pub fn is_half_space(shape: &Shape) -> bool {
+    match shape {
+        Shape::HalfSpace { .. } => true,
+        Shape::Rotated { shape, .. } => is_half_space(shape),
         _ => false,
     }
 }

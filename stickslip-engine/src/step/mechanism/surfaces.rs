@@ -1,7 +1,7 @@
 //! Where the exact surfaces of rigid bodies are near each other.
 
 use super::super::build::whole;
-use super::corners::{corners, is_polygon};
+use super::corners::{corners, is_box, is_half_space};
 use crate::body::Body;
 use crate::contact::Rules;
 use crate::geometry::{Bounds, Shape, SignedDistance};
@@ -51,8 +51,10 @@ struct RigidSurface {
     areas: Vec<f64>,
     /// Points beside the corners of its faces.
     corners: Vec<[f64; 3]>,
-    /// Whether it meets others there or at theirs: a polygon in the plane.
-    is_polygon: bool,
+    /// Whether it is a box in the plane.
+    is_box: bool,
+    /// Whether it is that, or a half-space.
+    is_plain: bool,
     /// A ball around the body where it is at the start; without bounds the radius is infinite.
     center: [f64; 3],
     reach: f64,
@@ -130,7 +132,8 @@ impl RigidSurfaces {
                     points: Vec::new(),
                     areas: Vec::new(),
                     corners: Vec::new(),
-                    is_polygon: false,
+                    is_box: false,
+                    is_plain: is_half_space(&body.shape),
                     center: [0.0; 3],
                     reach: f64::INFINITY,
                     half: [f64::INFINITY; 3],
@@ -158,13 +161,14 @@ impl RigidSurfaces {
             let whole = whole::<D>(scene, index).bounds();
             let half = whole.map_or([f64::INFINITY; 3], |whole| whole.size().map(|size| 0.5 * size));
             let corners = corners(&body.shape, spacing, axes);
-            let is_polygon = axes == 2 && is_polygon(&body.shape);
+            let is_box = axes == 2 && is_box(&body.shape);
             RigidSurface {
                 body: index,
                 points,
                 areas,
                 corners,
-                is_polygon,
+                is_box,
+                is_plain: is_box,
                 center,
                 reach,
                 half,
@@ -379,7 +383,9 @@ impl RigidSurfaces {
                 (gap <= margin).then_some(contact)
             };
             // What resists by its area has the points that stand for it.
-            let first = if one.surface.is_polygon && !bonds { points.len() } else { 0 };
+            // Where two boxes in the plane meet, or a box and a half-space, a corner of either is.
+            let by_corners = one.surface.is_box && other.surface.is_plain && !bonds;
+            let first = if by_corners { points.len() } else { 0 };
             let count = points.len() + if bonds { 0 } else { corners.len() } - first;
             let parts = by_parts(count, PART, |part| {
                 let mut last = ([0.0; 3], 0.0);

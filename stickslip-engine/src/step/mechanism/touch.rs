@@ -43,8 +43,9 @@ pub fn least_slip(touches: &[Touch]) -> f64 {
 /// slip:      l_t  = mu(s) l_n + c A dt + eta A dt |v_t|,   against the slip
 /// pull:      l_n >= -a A dt   where n.v >= max(w, 0)
 /// ```
-/// w = -gap / dt, without the slack that faces have: the surfaces do not overlap after the step; where they would, and approach each other at the speed
-/// v^n, w = e v^n with the coefficient of restitution e (Newton; Moreau 1988). Those that overlap part slowly.
+/// w = -gap / dt, without the slack that faces have: the surfaces do not overlap after the step; where they would, and
+/// approach each other at the speed v^n, w = e v^n with the coefficient of restitution e (Newton; Moreau 1988). Those
+/// that overlap part slowly.
 /// mu(s), c, a, eta: see [`Friction`]; A: the contact's share of the area over which they touch. Surfaces that stuck at
 /// the end of the step before bear the static coefficient, and so do those that come to rest; once they slip it is
 /// that of their slip.

@@ -50,7 +50,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
     Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Touch,
-    approach, begin, find, parted, press, slip,
+    approach, begin, find, follow, parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -152,7 +152,8 @@ const ALONE: f64 = 0.9;
 /// What of that it does cross, over what it does where bodies are on the common grid.
 const LARGER_STEPS: f64 = 1.5;
 
-/// How deep a layer may be pressed [cells]: a body is two cells thick at least, and a point beyond its middle leaves by the other face.
+/// How deep a layer may be pressed [cells]: a body is two cells thick at least, and a point beyond its middle leaves by
+/// the other face.
 const PIERCED: f64 = 1.0;
 
 /// How much of a cell a point comes deeper into its partner in a step, at most: what strikes is stiffer within a step
@@ -349,6 +350,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         });
         let parted: Vec<Memory> = parted(known, &touches).copied().collect();
         begin(&bodies, &obstacles, &mut touches, dt);
+        follow(&bodies, &obstacles, &mut touches, dt);
         let pressed = waiting.iter().map(|touch| (touch.side, touch.area * touch.pressure()));
         let unfelt = touches.iter().map(|touch| (touch.side, touch.unfelt_force()));
         let unfelt = pressed.chain(unfelt).collect();
@@ -540,7 +542,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         [0, 1, 2].map(|i| (0..3).map(|j| inverse.0[i][j] * turn[j]).sum())
     }
 
-    /// A point that a layer presses, too deep for it to keep the bodies apart.
+    /// A point that its layer feels too deep to keep the bodies apart.
     fn pierced_reference(&self) -> Option<StepError> {
         let Touching { touches, .. } = &self.workspace.reference_touching;
         let depth = |touch: &Touch<D>| -touch.gap / self.state.references.nodes[touch.side].form.cell;

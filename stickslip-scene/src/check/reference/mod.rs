@@ -83,11 +83,15 @@ pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
     let refused = || {
         let problem = check(scene).err()?;
         let found = problem.found.split(", where `").next().unwrap_or_default();
-        Some(format!("`{}` is {found}", problem.key))
+        let of_interior = problem.key.ends_with("interior").then(|| inelastic.clone()).flatten();
+        Some(of_interior.unwrap_or_else(|| format!("`{}` is {found}", problem.key)))
     };
+    // Nobody knows what a law from outside does.
+    let is_custom = |&body: &usize| matches!(material(scene, body).law, Material::Custom(_));
+    let none_beside = flowing.len() == open.len() || flowing.iter().any(is_custom);
     let because = (wanted.map(|key| format!("`{key}` is written")))
-        .or_else(|| inelastic.clone().filter(|_| flowing.len() == open.len()))
-        .or_else(|| refused().map(|why| inelastic.unwrap_or(why)))
+        .or_else(|| inelastic.clone().filter(|_| none_beside))
+        .or_else(refused)
         .or_else(|| no_grid(scene));
     if let Some(why) = because {
         scene.discretization.interior = Interior::Grid;
@@ -133,9 +137,9 @@ fn stays_whole(material: &NamedMaterial) -> bool {
         && !matches!(material.law, Material::Damage(_) | Material::Custom(_))
 }
 
-/// Whether a law takes material apart.
+/// Whether a law takes material apart: by damage, or by a strain at failure.
 fn may_part(material: &NamedMaterial) -> bool {
-    matches!(material.law, Material::Damage(_))
+    matches!(material.law, Material::Damage(_)) || material.law.given().get("d1").is_some()
 }
 
 /// Whether a material resists shear.

@@ -261,6 +261,7 @@ fn such_bodies_meet_each_other_and_all_others() {
 #[test]
 fn some_bodies_on_the_grid_cannot_meet_such_bodies() {
     let periodic = "{ min = [-0.5, -2], max = [3.5, 2], x_min = 'periodic', x_max = 'periodic' }";
+    let brittle = "{ density = 1, johnson_cook = { young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3, d1 = 0.1 } }";
     let soft = "{ density = 1, neo_hookean = { bulk_modulus = 1e6, shear_modulus = 0 } }";
     for (top, set, is, allowed) in [
         (
@@ -273,6 +274,12 @@ fn some_bodies_on_the_grid_cannot_meet_such_bodies() {
         (
             &format!("materials.glass = {GLASS}"),
             &[("bodies[1].material", "glass")],
+            "may part by its law",
+            "a law that leaves material in one piece",
+        ),
+        (
+            &format!("materials.steel = {brittle}"),
+            &[("bodies[1].material", "steel")],
             "may part by its law",
             "a law that leaves material in one piece",
         ),
@@ -383,6 +390,14 @@ fn scenes_that_leave_it_open_have_what_fits_their_bodies() {
     let water = chosen(&format!("{time}\n{}{}", disk("a", "rubber", ""), disk("b", "water", "")));
     let why = "`b` is of a material that may flow or part, `neo_hookean`";
     assert_eq!(water, (Interior::Grid, Some(why.to_string())), "a fluid has no surface that it could find");
+    let sticky = "contact = [{ cohesion = 1 }]";
+    let both = disk("a", "rubber", "") + &disk("b", "clay", "");
+    let (_, because) = chosen(&format!("{time}\n{sticky}\n{both}"));
+    assert_eq!(
+        because.as_deref(),
+        Some("`contact[0].cohesion` is 1 between `a` and `b`"),
+        "what stands in the way"
+    );
     let rigid = disk("b", "clay", "rigid = {}");
     assert_eq!(chosen(&format!("{time}\n{}{rigid}", disk("a", "rubber", ""))).0, Interior::Reference);
     let [far, near, beyond] = ["-2", "-1", "-0.99"].map(|low| {

@@ -109,7 +109,7 @@ impl Changes {
         Changes(found.all)
     }
 
-    /// Tables whose second row is not before `end` [s], each with the time of its first: of these a run sees the first
+    /// Tables whose first row is not before `end` [s], each with the time of its first: of these a run sees the first
     /// value alone.
     pub fn tables_not_begun(&self, end: f64) -> impl Iterator<Item = (&Change, f64)> {
         self.0.iter().filter_map(move |change| {
