@@ -167,9 +167,9 @@ pub fn evaluate(
     allowed: &str,
     (context, variation): (&Context, Dependence),
 ) -> Result<Expression, Fault> {
-    if wanted == Powers::from(AngularVelocity::POWERS)
-        && plain_unit(node).is_some_and(|unit| unit.ends_with("Hz"))
-    {
+    // Rates of decay are as good in hertz.
+    let turns = allowed.contains(&AngularVelocity::example());
+    if turns && plain_unit(node).is_some_and(|unit| unit.ends_with("Hz")) {
         let found = format!("{}, of which nobody knows whether it counts turns or radians", node.found());
         return Err(Fault::new(&node.key(), found, "\"rad/s\", \"rpm\" or \"1/s\"").at(node.span()));
     }
