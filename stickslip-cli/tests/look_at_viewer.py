@@ -168,8 +168,8 @@ def follow(driver, address):
         wait.until(lambda _: shown() > seen[-1])
         seen.append(shown())
     told = {"seen": seen, "looks": settled(driver)}
-    wait.until(lambda _: "running: " in find("status").text)
-    told["status"] = find("status").text
+    # Between two looks it may say that it is running and no more.
+    told["status"] = wait.until(lambda _: next(filter(lambda text: "running: " in text, [find("status").text]), None))
     wait.until(lambda d: d.find_elements("css selector", "figure[data-chart=energy]"))
 
     find("follow").click()

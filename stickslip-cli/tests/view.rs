@@ -320,8 +320,14 @@ fn a_run_that_goes_on_is_followed_in_a_browser() {
     let Some(python) = stickslip::python_with_browser() else { return };
     let workplace = Workplace::new();
     workplace.write("scene.toml", &new_scene());
-    let long =
-        ["cells_per_radius=3", "bodies[0].velocity=[0, 0]", "time.end=1000 s", "outputs.particles=0.2 s"];
+    // Undamped, so coarse a disk bounces on for 15 s of its time and then leaves the domain.
+    let long = [
+        "cells_per_radius=3",
+        "bodies[0].velocity=[0, 0]",
+        "damping.viscous=20",
+        "time.end=1000 s",
+        "outputs.particles=0.2 s",
+    ];
     let set = long.iter().flat_map(|value| ["--set", value]);
     let arguments: Vec<&str> =
         ["run", "scene.toml", "--threads", "1", "--max-time", "5 min"].into_iter().chain(set).collect();
