@@ -1,9 +1,9 @@
 //! What a scene takes in memory while it is read, over the length of its text.
 //!
-//! The text is copied once, as the source of what errors show. TOML's parser takes 24 bytes for each of its tokens and
-//! 48 for a value with its place, in lists that double as they grow; a node of ours takes 64. A row `[123456,4],` is six
-//! tokens and three values in twelve letters, which makes 12 + 12 + 16 bytes a letter before lists grow: 60 hold it.
-//! Trees that were copied for each key, with the whole path in each of their nodes, took 264.
+//! The text is copied once, as the source of what errors show. TOML's parser takes 24 bytes for each of its tokens
+//! and 48 for a value with its place, in lists that double as they grow; a node of ours takes 64. A row `[123456,4],`
+//! is six tokens and three values in twelve letters, which makes 12 + 12 + 16 bytes a letter before lists grow: 60
+//! hold it. Trees that were copied for each key, with the whole path in each of their nodes, took 264.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::Write;

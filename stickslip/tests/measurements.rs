@@ -242,12 +242,12 @@ fn probes_are_exact_for_what_is_linear_up_to_the_surface() {
     }
 }
 
-/// Lame's thick cylinder, a quarter of it with eight cells across the wall: at r the radial stress is p (1 - b^2 / r^2) /
-/// (b^2 / a^2 - 1) and the hoop stress the same with a plus sign. Source: Timoshenko and Goodier (1970), Theory of
-/// Elasticity, section 28. Bounds are what it measures, rounded up. At the bore, on the common grid, both are a tenth of
-/// p off, where the particles themselves are off by half of that; on a grid of its own, the radial stress is .19 p short
-/// and the hoop stress .06 p off: within half a cell of a surface the face's own cells are cut. From half a cell inwards
-/// that is over.
+/// Lame's thick cylinder, a quarter of it with eight cells across the wall: at r the radial stress is p (1 - b^2 /
+/// r^2) / (b^2 / a^2 - 1) and the hoop stress the same with a plus sign. Source: Timoshenko and Goodier (1970),
+/// Theory of Elasticity, section 28. Bounds are what it measures, rounded up. At the bore, on the common grid, both
+/// are a tenth of p off, where the particles themselves are off by half of that; on a grid of its own, the radial
+/// stress is .19 p short and the hoop stress .06 p off: within half a cell of a surface the face's own cells are cut.
+/// From half a cell inwards that is over.
 #[test]
 fn probes_at_the_bore_of_a_cylinder_have_lames_stress() {
     for (interior, bounds) in [
@@ -312,10 +312,10 @@ fn cylinder(interior: &str) -> String {
     )
 }
 
-/// Rows of a body of prescribed motion have what is prescribed at their own time, not the mean over the step before: v =
-/// sin(1000 t) m/s, w = 200 cos(500 t) rad/s, and after a jump at 1 ms 0 for 1 m/s. The energy is m v^2 / 2 + I w^2 / 2,
-/// with m = 10 kg, and I by the first row, where v = 0. To 1e-9 of the units, ten thousand round-offs; the means over the
-/// step were off by up to .5 m/s.
+/// Rows of a body of prescribed motion have what is prescribed at their own time, not the mean over the step before:
+/// v = sin(1000 t) m/s, w = 200 cos(500 t) rad/s, and after a jump at 1 ms 0 for 1 m/s. The energy is m v^2 / 2 + I
+/// w^2 / 2, with m = 10 kg, and I by the first row, where v = 0. To 1e-9 of the units, ten thousand round-offs; the
+/// means over the step were off by up to .5 m/s.
 #[test]
 fn a_prescribed_body_has_in_its_row_the_motion_of_the_rows_time() {
     let text = r#"

@@ -845,8 +845,8 @@ impl StepError {
                  `temperature` is the change since the start"
             }
             StepError::Pierced { .. } => {
-                "bodies that meet faster than their waves are not stopped by the layer between them, and would pass through \
-                 each other: try slower motion or a stiffer material"
+                "bodies that meet faster than their waves are not stopped by the layer between them, and would pass \
+                 through each other: try slower motion or a stiffer material"
             }
             StepError::Outside { .. } => "mend the function, and go on from the last checkpoint",
             StepError::NotFinite { .. } | StepError::NoNumber { .. } => {

@@ -592,8 +592,14 @@ pub(super) fn find_carriers(places: &mut Vec<u32>, numbers: &[u32], points: &[Pa
 pub(super) fn find<const D: usize>(
     active: &ActiveBlocks<D>,
     boundary: &Boundary,
-    (body, mut node): (usize, [i32; D]),
+    (body, node): (usize, [i32; D]),
 ) -> Option<(u32, u32)> {
+    let (node, mirrored) = before_mirrors(boundary, node);
+    Some((active.node_index(body, node)? as u32, mirrored))
+}
+
+/// A node, of one behind mirrors its image before them, and the axes along which it is one, a bit each.
+pub(super) fn before_mirrors<const D: usize>(boundary: &Boundary, mut node: [i32; D]) -> ([i32; D], u32) {
     let mut mirrored = 0;
     for wall in boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
         if wall.depth(node) < 0 {
@@ -601,7 +607,7 @@ pub(super) fn find<const D: usize>(
             mirrored ^= 1 << wall.axis;
         }
     }
-    Some((active.node_index(body, node)? as u32, mirrored))
+    (node, mirrored)
 }
 
 /// A vector's image across axes, a bit each.

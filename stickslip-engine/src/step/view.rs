@@ -263,9 +263,10 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
                     kinetic: totals.kinetic,
                     strain: totals.strain,
                 };
-                let prescribed = body.motion.as_deref();
-                prescribed
-                    .map_or(over_step.clone(), |motion| as_prescribed(over_step, motion, self.state.time))
+                match body.motion.as_deref() {
+                    Some(motion) => as_prescribed(over_step, motion, self.state.time),
+                    None => over_step,
+                }
             })
             .collect()
     }

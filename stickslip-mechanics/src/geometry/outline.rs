@@ -235,9 +235,9 @@ mod tests {
     }
 
     /// The box around a slanted run of length l comes nearer than the run by .35 l at most, and an arc of radius 1
-    /// recedes from a point .1 outside of it by 5.5 s^2 at s from the nearest place. Of 100,000 edges, 12,500 runs with
-    /// l = 5e-4, those within s = .0057 are looked at: 23, and one more on the way down. These are 192 edges, up to twice
-    /// that where boxes fall badly.
+    /// recedes from a point .1 outside of it by 5.5 s^2 at s from the nearest place. Of 100,000 edges, 12,500 runs
+    /// with l = 5e-4, those within s = .0057 are looked at: 23, and one more on the way down. These are 192 edges, up
+    /// to twice that where boxes fall badly.
     #[test]
     fn a_point_looks_at_few_of_many_edges() {
         let count = 100_000;

@@ -5,8 +5,8 @@ use stickslip_mechanics::geometry::form::Weights;
 use stickslip_mechanics::tensor::Vector;
 
 /// Lets the layers of points that come to touch feel no more of their depth than these come deeper in a step of `dt`
-/// [s], or they would store energy that nobody gave: where steps become shorter as bodies touch, where a point slides in
-/// under an edge, and where bodies overlap at the start.
+/// [s], or they would store energy that nobody gave: where steps become shorter as bodies touch, where a point slides
+/// in under an edge, and where bodies overlap at the start.
 pub fn begin<const D: usize>(
     bodies: &[Deforming<'_, D>],
     obstacles: &[&dyn Obstacle],

@@ -139,7 +139,8 @@ fn late_tables(scene: &Scene) -> Option<Warning> {
         others => format!("; so it is with {others} more"),
     };
     let why = format!(
-        "the table begins at {first} s, not before the end of the run, {end} s: its first value holds all the time{others}"
+        "the table begins at {first} s, not before the end of the run, {end} s: its first value holds \
+         all the time{others}"
     );
     Some(Warning::about(change.key.clone(), why))
 }

@@ -237,9 +237,9 @@ fn warnings(
         .collect()
 }
 
-/// A place where balls touch costs as much in a step as so many particles: half of it where they rest, and twice or more
-/// where they fall. One of a face costs so many where nothing moves, and so many where something strikes a stack: then
-/// nothing is found by few sweeps.
+/// A place where balls touch costs as much in a step as so many particles: half of it where they rest, and twice or
+/// more where they fall. One of a face costs so many where nothing moves, and so many where something strikes a
+/// stack: then nothing is found by few sweeps.
 const PARTICLES_A_CONTACT: f64 = 10.0;
 const AT_REST: f64 = 2.5;
 const STRUCK: f64 = 25.0;

@@ -273,7 +273,8 @@ fn several(dimension: &str) -> String {
     .replace("plane-strain", dimension)
 }
 
-/// A body that is crushed beyond what it bears, by a pressure of a hundred times its modulus, ends the run with its name.
+/// A body that is crushed beyond what it bears, by a pressure of a hundred times its modulus, ends the run with its
+/// name.
 #[test]
 fn what_is_crushed_says_so() {
     let load = "[[loads]]\nname = 'sea'\nbody = 'disk'\non = 'surface'\npressure = 1e8\n";
@@ -444,8 +445,8 @@ fn flat_landings_keep_the_energy() {
 }
 
 /// A block is drawn along under a frictionless rigid plate that is shorter than it: nothing holds it back, also not
-/// where its points come in and out under the plate's ends. These were pushed out by the plate's ends, with 4 % of the normal
-/// force, at any cell.
+/// where its points come in and out under the plate's ends. These were pushed out by the plate's ends, with 4 % of
+/// the normal force, at any cell.
 #[test]
 fn the_ends_of_a_rigid_plate_do_not_hook() {
     for cell in [1e-3, 0.5e-3] {

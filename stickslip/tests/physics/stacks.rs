@@ -1,11 +1,12 @@
 //! Stacks of free rigid bodies stand.
 //!
-//! Set-up: a tower of 50 boxes, 0.2 m by 0.1 m, whose sides are flush, on a rigid floor; and a wall of 100 such bricks in
-//! ten courses, side by side without a gap, with friction.
+//! Set-up: a tower of 50 boxes, 0.2 m by 0.1 m, whose sides are flush, on a rigid floor; and a wall of 100 such
+//! bricks in ten courses, side by side without a gap, with friction.
 //!
 //! Expected: nothing moves, as every centre of mass lies above the middle of what bears it. Faces rest on each other
 //! within 1e-5 of the distance between points of their surfaces, 1e-7 m here, so boxes may sink by that at each face;
-//! kinetic energy is that of what sweeps leave over, 1e-6 of the speed that gravity gives in a step under the whole load.
+//! kinetic energy is that of what sweeps leave over, 1e-6 of the speed that gravity gives in a step under the whole
+//! load.
 
 use crate::trial::{distance, run_to, start};
 use stickslip::door::Simulation;

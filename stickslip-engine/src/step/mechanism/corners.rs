@@ -19,8 +19,9 @@ struct Corner {
     ways: Vec<[f64; 3]>,
 }
 
-/// Points beside the corners that stand out of a shape, one on each face. Points of a surface are middles of its pieces,
-/// so what a face bears at its rim would be borne half a piece within it, now here and now there as round-off tilts it.
+/// Points beside the corners that stand out of a shape, one on each face. Points of a surface are middles of its
+/// pieces, so what a face bears at its rim would be borne half a piece within it, now here and now there as round-off
+/// tilts it.
 pub fn corners(shape: &Shape, spacing: f64, axes: usize) -> Vec<[f64; 3]> {
     let on = |place: &[f64; 3]| shape.level(*place, axes).distance.abs() <= ON * spacing;
     let stands_out = |place: &[f64; 3]| {
@@ -39,21 +40,24 @@ pub fn corners(shape: &Shape, spacing: f64, axes: usize) -> Vec<[f64; 3]> {
     .collect()
 }
 
-/// Whether a shape is a box.
-pub fn is_box(shape: &Shape) -> bool {
-    match shape {
-        Shape::Box { .. } => true,
-        Shape::Rotated { shape, .. } => is_box(shape),
-        _ => false,
-    }
+/// A shape in the plane that a box meets at a corner of either.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plain {
+    /// A box.
+    Box,
+    /// A half-space.
+    HalfSpace,
 }
 
-/// Whether a shape is a half-space.
-pub fn is_half_space(shape: &Shape) -> bool {
-    match shape {
-        Shape::HalfSpace { .. } => true,
-        Shape::Rotated { shape, .. } => is_half_space(shape),
-        _ => false,
+impl Plain {
+    /// Which one a shape is, turned or not; none in space, where edges cross.
+    pub fn of(shape: &Shape, axes: usize) -> Option<Self> {
+        match shape {
+            Shape::Box { .. } if axes == 2 => Some(Plain::Box),
+            Shape::HalfSpace { .. } if axes == 2 => Some(Plain::HalfSpace),
+            Shape::Rotated { shape, .. } => Plain::of(shape, axes),
+            _ => None,
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Where the exact surfaces of rigid bodies are near each other.
 
 use super::super::build::whole;
-use super::corners::{corners, is_box, is_half_space};
+use super::corners::{Plain, corners};
 use crate::body::Body;
 use crate::contact::Rules;
 use crate::geometry::{Bounds, Shape, SignedDistance};
@@ -51,10 +51,8 @@ struct RigidSurface {
     areas: Vec<f64>,
     /// Points beside the corners of its faces.
     corners: Vec<[f64; 3]>,
-    /// Whether it is a box in the plane.
-    is_box: bool,
-    /// Whether it is that, or a half-space.
-    is_plain: bool,
+    /// Whether it meets boxes at corners alone.
+    plain: Option<Plain>,
     /// A ball around the body where it is at the start; without bounds the radius is infinite.
     center: [f64; 3],
     reach: f64,
@@ -132,8 +130,7 @@ impl RigidSurfaces {
                     points: Vec::new(),
                     areas: Vec::new(),
                     corners: Vec::new(),
-                    is_box: false,
-                    is_plain: is_half_space(&body.shape),
+                    plain: Plain::of(&body.shape, axes),
                     center: [0.0; 3],
                     reach: f64::INFINITY,
                     half: [f64::INFINITY; 3],
@@ -161,14 +158,12 @@ impl RigidSurfaces {
             let whole = whole::<D>(scene, index).bounds();
             let half = whole.map_or([f64::INFINITY; 3], |whole| whole.size().map(|size| 0.5 * size));
             let corners = corners(&body.shape, spacing, axes);
-            let is_box = axes == 2 && is_box(&body.shape);
             RigidSurface {
                 body: index,
                 points,
                 areas,
                 corners,
-                is_box,
-                is_plain: is_box,
+                plain: Plain::of(&body.shape, axes),
                 center,
                 reach,
                 half,
@@ -382,9 +377,9 @@ impl RigidSurfaces {
                 let contact = RigidContact { bodies, away: b.away, place, normal, gap, slack, area: 0.0 };
                 (gap <= margin).then_some(contact)
             };
-            // What resists by its area has the points that stand for it.
-            // Where two boxes in the plane meet, or a box and a half-space, a corner of either is.
-            let by_corners = one.surface.is_box && other.surface.is_plain && !bonds;
+            // Where a box meets another one or a half-space, a corner of either is. What resists by its area has the
+            // points that stand for it.
+            let by_corners = one.surface.plain == Some(Plain::Box) && other.surface.plain.is_some() && !bonds;
             let first = if by_corners { points.len() } else { 0 };
             let count = points.len() + if bonds { 0 } else { corners.len() } - first;
             let parts = by_parts(count, PART, |part| {
@@ -544,9 +539,9 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         (!goes_on(at, slope)).then_some((at, level))
     }
 
-    /// How far a point of its surface is from `other`, where both are flat from there to the place that was found nearest
-    /// and nearly parallel. Such a point stays where it is, or round-off would choose another one in each step, and what
-    /// it bears would not be found again.
+    /// How far a point of its surface is from `other`, where both are flat from there to the place that was found
+    /// nearest and nearly parallel. Such a point stays where it is, or round-off would choose another one in each step,
+    /// and what it bears would not be found again.
     fn faces(
         &self,
         other: &PlacedSurface<T, D>,

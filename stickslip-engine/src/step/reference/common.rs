@@ -16,17 +16,19 @@
 
 use super::super::among::Among;
 use super::super::build::whole;
-use super::is_reference;
+use super::super::loads::{before_mirrors, mirror};
+use super::loads::carrier;
+use super::{is_reference, layer_moduli};
 use crate::Kernels;
-use crate::body::{Body, Particle};
+use crate::body::Body;
 use crate::boundary::Boundary;
 use crate::contact::Rules;
 use crate::geometry::{MirroredShape, SignedDistance};
 use crate::grid::{ActiveBlocks, Lattice, Node, SIDE, locate};
 use crate::lanes::Laned;
-use crate::scene::{ContactLaw, Face, Scene};
+use crate::scene::{ContactLaw, Scene};
 use crate::surroundings::ReferenceMap;
-use crate::tensor::{Matrix, Symmetric, Vector};
+use crate::tensor::{Matrix, Vector};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use stickslip_reference::contact::{Deforming, Obstacle, Touch};
@@ -39,9 +41,6 @@ const MARGIN: f64 = 2.0;
 
 /// Half a side of the box that is a point to every basis [cells].
 const POINT: f64 = 1e-3;
-
-/// Shear over longitudinal modulus of a layer, at least.
-const LEAST_SHEAR: f64 = 1e-3;
 
 /// A body on the common grid that bodies on grids of their own may meet.
 pub struct CommonPartner {
@@ -65,16 +64,11 @@ impl CommonPartner {
         };
         let is_common = |&body: &usize| !is_reference(scene, body) && !scene.bodies[body].is_rigid();
         let all = (0..scene.bodies.len()).filter(is_common).filter(|&body| meets(body));
-        let partner = |body: usize| {
-            let law = &scene.materials[scene.bodies[body].material].law;
-            let wave = law.wave_modulus_at_rest(scene.dimension.thickness());
-            let shear = law.elastic().shear_modulus.max(LEAST_SHEAR * wave);
-            CommonPartner {
-                body,
-                whole: whole::<D>(scene, body),
-                flows: !law.trusts_deformation(),
-                softness: [wave, shear].map(|modulus| scene.discretization.cell / modulus),
-            }
+        let partner = |body: usize| CommonPartner {
+            body,
+            whole: whole::<D>(scene, body),
+            flows: !scene.materials[scene.bodies[body].material].law.trusts_deformation(),
+            softness: layer_moduli(scene, body).map(|modulus| scene.discretization.cell / modulus),
         };
         all.map(partner).collect()
     }
@@ -138,25 +132,9 @@ impl<T: Laned, const D: usize> CommonGrid<'_, T, D> {
     fn each_node(&self, place: Vector<f64, D>, take: &mut dyn FnMut(Share<D>)) {
         let half = T::of(POINT) * self.lattice.cell;
         let edges = Matrix::from_fn(|i, j| if i == j && i < D { half } else { T::ZERO });
-        let point = Particle {
-            position: Vector::from_fn(|k| T::of(place[k])),
-            velocity: Vector::ZERO,
-            spin: Vector::ZERO,
-            mass: T::ZERO,
-            volume: T::ZERO,
-            half_width: half,
-            deformation: Matrix::IDENTITY,
-            stress: Symmetric::ZERO,
-            number: 0,
-        };
-        let mut fold = |mut node: [i32; D], [own, _]: [T; 2]| {
-            let mut mirrored = 0;
-            for wall in self.boundary.walls.iter().filter(|wall| wall.face == Face::Symmetry) {
-                if wall.depth(node) < 0 {
-                    node = wall.image(node);
-                    mirrored ^= 1 << wall.axis;
-                }
-            }
+        let point = carrier(Vector::from_fn(|k| T::of(place[k])), Matrix::IDENTITY, T::ZERO);
+        let mut fold = |node: [i32; D], [own, _]: [T; 2]| {
+            let (node, mirrored) = before_mirrors(self.boundary, node);
             if own > T::ZERO {
                 take(Share { node, mirrored, share: own.f64() });
             }
@@ -177,14 +155,22 @@ impl<T: Laned, const D: usize> CommonGrid<'_, T, D> {
         shares
     }
 
-    /// Adds what the points that touch a body do to it to the forces on its nodes that are here.
-    pub fn push(&self, skin: &Skin, body: usize, nodes: &mut [Node<T, D>], touches: &[Touch<D>]) {
-        for touch in touches.iter().filter(|touch| touch.memory.partner as usize == body) {
-            let force = touch.force() * -1.0;
+    /// Adds what the points that touch such bodies do to these to the forces on their nodes that are here.
+    pub fn push(
+        &self,
+        (partners, skin): (&[CommonPartner], &Skin),
+        nodes: &mut [Node<T, D>],
+        touches: &[Touch<D>],
+    ) {
+        for touch in touches {
+            let body = touch.memory.partner as usize;
+            if partners.binary_search_by_key(&body, |partner| partner.body).is_err() {
+                continue;
+            }
             for (Share { node, mirrored, share }, _) in self.shares(skin, body, touch.at - touch.away) {
                 let Some(index) = self.active.node_index(body, node) else { continue };
-                let turned = |k: usize| if mirrored >> k & 1 == 1 { -force[k] } else { force[k] };
-                nodes[index].force += Vector::from_fn(|k| T::of(turned(k) * share));
+                let force = mirror(touch.force() * -share, mirrored);
+                nodes[index].force += Vector::from_fn(|k| T::of(force[k]));
             }
         }
     }
@@ -445,15 +431,11 @@ impl<T: Laned, const D: usize> Obstacle for CommonBody<'_, T, D> {
     }
 
     fn velocity(&self, place: [f64; 3]) -> [f64; 3] {
-        let mut velocity = [0.0; 3];
-        for (Share { mirrored, share, .. }, own) in
-            self.grid.shares(self.skin, self.partner.body, Vector::of(place))
-        {
-            for k in 0..D {
-                velocity[k] += if mirrored >> k & 1 == 1 { -own[k] } else { own[k] } * share;
-            }
-        }
-        velocity
+        let shares = self.grid.shares(self.skin, self.partner.body, Vector::of(place));
+        let own = |(Share { mirrored, share, .. }, velocity): &(Share<D>, [f64; 3])| {
+            mirror(Vector::<f64, D>::of(*velocity), *mirrored) * *share
+        };
+        shares.iter().map(own).sum::<Vector<f64, D>>().space()
     }
 
     fn bounds(&self) -> [[f64; 3]; 2] {

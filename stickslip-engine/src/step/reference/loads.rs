@@ -13,7 +13,7 @@ use crate::lanes::Laned;
 use crate::load::{CarriedPoint, LoadSums, LoadTime, PointForce};
 use crate::part::PartPoint;
 use crate::scene::{MeanRoom, OutsideValue};
-use crate::tensor::{Matrix, Vector, cross};
+use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use stickslip_reference::contact::Deforming;
 
 /// What loads do to these bodies in a step.
@@ -200,20 +200,20 @@ impl<const D: usize> ReferenceLoads<D> {
 }
 
 /// A particle that stands where a point is.
-fn carrier<const D: usize>(
-    position: Vector<f64, D>,
-    deformation: Matrix<f64>,
-    mass: f64,
-) -> Particle<f64, D> {
+pub(super) fn carrier<T: Real, const D: usize>(
+    position: Vector<T, D>,
+    deformation: Matrix<T>,
+    mass: T,
+) -> Particle<T, D> {
     Particle {
         position,
         velocity: Vector::ZERO,
         spin: Vector::ZERO,
         mass,
-        volume: 0.0,
-        half_width: 0.0,
+        volume: T::ZERO,
+        half_width: T::ZERO,
         deformation,
-        stress: crate::tensor::Symmetric::ZERO,
+        stress: Symmetric::ZERO,
         number: 0,
     }
 }

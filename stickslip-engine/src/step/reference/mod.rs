@@ -207,12 +207,12 @@ impl<const D: usize> ReferenceBody<D> {
         };
         let (cell, faces) = (scene.discretization.cell, scene.held_faces(body));
         let form = Arc::new(Form::<D>::new(&body.shape, cell, faces).map_err(no_grid)?);
-        let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
+        let moduli = layer_moduli(scene, number);
         let width = width::<D>(&body.shape, &faces);
         let nodes =
             Interior::new(form.clone(), material.density, |place| Vector::of(velocity(place.space())));
         let surface = points(&body.shape, &form);
-        let wave = (modulus / material.density).sqrt();
+        let wave = (moduli[0] / material.density).sqrt();
         let constants = ReferenceBody {
             body: number,
             shape: MirroredShape::new(&body.shape, faces.mirrors(), D),
@@ -221,12 +221,22 @@ impl<const D: usize> ReferenceBody<D> {
             settling: width / wave * if scene.time.relax.is_some() { 1.0 } else { SETTLING },
             courant: in_contact(&form, &surface),
             surface,
-            moduli: [modulus, material.law.elastic().shear_modulus.max(1e-3 * modulus)],
+            moduli,
             memory: FrictionMemory { length: width, speed: wave / TRANSITS },
         };
         Ok((constants, nodes))
     }
 }
+
+/// Moduli of the longitudinal and the shear wave at rest of a body, by which a layer on it is stiff [Pa].
+fn layer_moduli(scene: &Scene, body: usize) -> [f64; 2] {
+    let law = &scene.materials[scene.bodies[body].material].law;
+    let wave = law.wave_modulus_at_rest(scene.dimension.thickness());
+    [wave, law.elastic().shear_modulus.max(LEAST_SHEAR * wave)]
+}
+
+/// Shear over longitudinal modulus of a layer, at least.
+const LEAST_SHEAR: f64 = 1e-3;
 
 /// Narrowest side of a body, of half a model that of the whole [m].
 fn width<const D: usize>(shape: &Shape, faces: &HeldFaces) -> f64 {
@@ -356,7 +366,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let unfelt = pressed.chain(unfelt).collect();
         press(&mut bodies, &mut touches, &|touch| friction(settings, touch, count));
         drop(obstacles);
-        settings.common.iter().for_each(|of| grid.push(skin, of.body, &mut field.nodes, &touches));
+        grid.push((&settings.common, skin), &mut field.nodes, &touches);
         reference_walls.clear();
         let mut own = Homeward::default();
         for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {

@@ -62,9 +62,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     found.map_or_else(|| contact::check(scene), Err)
 }
 
-/// Chooses where bodies are computed that do not say so, in a scene that leaves it open: on grids of their own those that
-/// are elastic, on the common grid the others; all there where nothing is elastic, or where something asks for what the
-/// former have not, such as a key of the common grid. It says why.
+/// Chooses where bodies are computed that do not say so, in a scene that leaves it open: on grids of their own those
+/// that are elastic, on the common grid the others; all there where nothing is elastic, or where something asks for
+/// what the former have not, such as a key of the common grid. It says why.
 pub(crate) fn choose_interior(scene: &mut Scene, wanted: Option<&str>) {
     let open = |body: &Body| !body.is_rigid() && body.interior.is_none();
     let open: Vec<usize> = (0..scene.bodies.len()).filter(|&body| open(&scene.bodies[body])).collect();

@@ -261,7 +261,8 @@ fn such_bodies_meet_each_other_and_all_others() {
 #[test]
 fn some_bodies_on_the_grid_cannot_meet_such_bodies() {
     let periodic = "{ min = [-0.5, -2], max = [3.5, 2], x_min = 'periodic', x_max = 'periodic' }";
-    let brittle = "{ density = 1, johnson_cook = { young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e3, d1 = 0.1 } }";
+    let brittle = "{ density = 1, johnson_cook = { young_modulus = 1e6, poisson_ratio = 0.3, \
+                   yield_stress = 1e3, d1 = 0.1 } }";
     let soft = "{ density = 1, neo_hookean = { bulk_modulus = 1e6, shear_modulus = 0 } }";
     for (top, set, is, allowed) in [
         (
@@ -286,8 +287,8 @@ fn some_bodies_on_the_grid_cannot_meet_such_bodies() {
         (&format!("materials.water = {soft}"), &[("bodies[1].material", "water")], "is a fluid", "a solid"),
     ] {
         let expected = format!(
-            "bodies[0].interior: \"reference\" of `a`, which may touch `b`, as no rule names the pair; that has interior = \
-             \"grid\" and {is}; allowed: {allowed}; or the same interior for both"
+            "bodies[0].interior: \"reference\" of `a`, which may touch `b`, as no rule names the pair; that has \
+             interior = \"grid\" and {is}; allowed: {allowed}; or the same interior for both"
         );
         let said = refused(&scene(top, set));
         assert_eq!(said, expected, "{top}");

@@ -76,8 +76,8 @@ impl Choice for OverlapUse {
         (
             "kept",
             OverlapUse::Kept,
-            "Of bodies on the grid it stays, without stress: contact only keeps it from growing; those on grids of their \
-             own are pressed apart within some transits of a wave.",
+            "Of bodies on the grid it stays, without stress: contact only keeps it from growing; those on grids of \
+             their own are pressed apart within some transits of a wave.",
         ),
         (
             "press",

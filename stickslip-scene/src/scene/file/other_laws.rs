@@ -410,8 +410,8 @@ mod tests {
         assert_eq!(answer("rubber"), None);
     }
 
-    /// Names of LS-DYNA, Abaqus, Uintah, NairnMPM, Karamelo and CB-Geo MPM: what the line begins with. Laws that have no
-    /// counterpart say so.
+    /// Names of LS-DYNA, Abaqus, Uintah, NairnMPM, Karamelo and CB-Geo MPM: what the line begins with. Laws that have
+    /// no counterpart say so.
     #[test]
     fn names_of_six_programs_have_a_true_line() {
         for (names, line) in [
