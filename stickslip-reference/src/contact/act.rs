@@ -152,7 +152,7 @@ fn settling<const D: usize>(bodies: &[Deforming<'_, D>], touch: &Touch<D>) -> f6
 }
 
 /// Velocity of a body at a point that touches, against its partner's [m/s].
-fn relative_velocity<const D: usize>(
+pub(super) fn relative_velocity<const D: usize>(
     bodies: &[Deforming<'_, D>],
     obstacles: &[&dyn Obstacle],
     touch: &Touch<D>,

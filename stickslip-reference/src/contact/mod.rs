@@ -25,11 +25,12 @@ mod near;
 #[cfg(test)]
 mod tests;
 
+use act::relative_velocity;
 pub use act::{approach, begin, follow, press, slip};
 pub use friction::Friction;
 pub use images::PeriodLengths;
 pub use look::{Seen, look};
-pub use near::{Neighbours, Partner, find};
+pub use near::{Neighbours, Partner, Search, find};
 
 use crate::interior::Interior;
 use crate::surface::SurfacePoint;

@@ -2,7 +2,7 @@
 
 use super::images::{PeriodLengths, pairs};
 use super::look::{BACK, came_through, looks_at};
-use super::{Deforming, Memory, Met, Obstacle, STIFFNESS, Touch, look};
+use super::{Deforming, Memory, Met, Obstacle, STIFFNESS, Touch, look, relative_velocity};
 use rayon::prelude::*;
 use stickslip_mechanics::geometry::form::digits;
 use stickslip_mechanics::geometry::{Shape, SignedDistance};
@@ -28,6 +28,10 @@ const SKIN: f64 = 0.25;
 const LISTED: f64 = NEAR + 2.0 * SKIN;
 /// How far the nearest point of a surface may be from a place just inside, undeformed, in cells.
 const AROUND: f64 = 2.0;
+/// What touches within so many steps is told to bodies that are not ready.
+const SOON: f64 = 3.0;
+/// How far ahead that is looked for, in cells.
+const AHEAD: f64 = 0.25;
 /// What of a gap is certain: gaps are measured along one direction, and some distances are bounds.
 const CERTAIN: f64 = 0.6;
 
@@ -67,21 +71,46 @@ struct ObstaclePair {
     gap: f64,
 }
 
-/// The points that touch, by body, point and partner. `meet` says whether a body touches a partner at all; `known` are
-/// the points that touched before, in the same order. Bodies meet images of each other, and of themselves.
+/// What a search for points that touch is told.
+#[derive(Clone, Copy)]
+pub struct Search<'a, const D: usize> {
+    /// The points that touched before, by body, point and partner.
+    pub known: &'a [Memory],
+    /// Whether a body touches a partner at all.
+    pub meet: &'a (dyn Fn(usize, Partner) -> bool + Sync),
+    /// After which lengths everything is there again.
+    pub lengths: PeriodLengths<D>,
+    /// Which bodies are ready to touch: others are told of what will touch them in one of the next steps.
+    pub ready: &'a [bool],
+    /// How long the step is [s].
+    pub dt: f64,
+}
+
+/// The points that touch, by body, point and partner, and the bodies that are not ready and will touch soon, by their
+/// places in the list of those that deform. Bodies meet images of each other, and of themselves.
 pub fn find<const D: usize>(
     (bodies, obstacles): (&[Deforming<'_, D>], &[&dyn Obstacle]),
-    known: &[Memory],
-    meet: &(dyn Fn(usize, Partner) -> bool + Sync),
+    search: Search<'_, D>,
     neighbours: &mut Neighbours<D>,
-    lengths: PeriodLengths<D>,
-) -> Vec<Touch<D>> {
-    if neighbours.are_old((bodies, obstacles), meet) {
-        *neighbours = Neighbours::new((bodies, obstacles), meet, lengths);
+) -> (Vec<Touch<D>>, Vec<usize>) {
+    if neighbours.are_old((bodies, obstacles), search.meet) {
+        *neighbours = Neighbours::new((bodies, obstacles), search.meet, search.lengths);
     }
     let here = &*neighbours;
-    let touches = |a: usize| here.touches_of((bodies, obstacles, a), known);
-    (0..bodies.len()).into_par_iter().map(touches).collect::<Vec<_>>().into_iter().flatten().collect()
+    let touches = |a: usize| here.touches_of((bodies, obstacles, a), search);
+    let mut all: Vec<Touch<D>> =
+        (0..bodies.len()).into_par_iter().map(touches).collect::<Vec<_>>().into_iter().flatten().collect();
+    let mut soon: Vec<usize> =
+        all.iter().filter(|touch| is_ahead(touch)).flat_map(|touch| touch.sides()).collect();
+    soon.sort_unstable();
+    soon.dedup();
+    all.retain(|touch| !is_ahead(touch));
+    (all, soon)
+}
+
+/// Whether a point does not touch yet. Those that touch may lie outside of the layer that they feel.
+fn is_ahead<const D: usize>(touch: &Touch<D>) -> bool {
+    touch.gap >= 0.0 && touch.memory.age == 0.0
 }
 
 impl<const D: usize> Neighbours<D> {
@@ -158,7 +187,7 @@ impl<const D: usize> Neighbours<D> {
             })
             .collect();
         let obstacle_pairs = |(number, &(a, r, _)): (usize, &(usize, usize, f64))| {
-            let far = 2.0 * SKIN * bodies[a].interior.form.cell;
+            let far = (2.0 * SKIN + AHEAD) * bodies[a].interior.form.cell;
             let close = (0..).zip(&places[a]).filter_map(|(point, at)| {
                 let gap = if obstacles[r].is_tracked() {
                     CERTAIN * nearest(obstacles[r], *at).0.distance
@@ -179,9 +208,10 @@ impl<const D: usize> Neighbours<D> {
     fn touches_of(
         &self,
         (bodies, obstacles, a): (&[Deforming<'_, D>], &[&dyn Obstacle], usize),
-        known: &[Memory],
+        search: Search<'_, D>,
     ) -> Vec<Touch<D>> {
         let number = bodies[a].body as u32;
+        let known = search.known;
         let known = &known[known.partition_point(|memory| memory.body < number)..];
         let known = &known[..known.partition_point(|memory| memory.body == number)];
         let is_known = |point: u32, partner: usize| {
@@ -193,27 +223,36 @@ impl<const D: usize> Neighbours<D> {
         let again = |memory: &Memory| {
             let partner = memory.partner as usize;
             match bodies.binary_search_by_key(&partner, |body| body.body) {
-                Ok(b) => point(memory.point).in_body(b, *memory),
+                Ok(b) => point(memory.point).in_body((b, 0.0), *memory),
                 Err(_) => {
                     let r = obstacles.binary_search_by_key(&partner, |obstacle| obstacle.body()).ok()?;
-                    point(memory.point).in_obstacle((r, obstacles[r]), *memory)
+                    point(memory.point).in_obstacle((r, obstacles[r], 0.0), *memory)
                 }
             }
         };
         let mut touches: Vec<Touch<D>> = known.iter().filter_map(again).collect();
+        let ahead = |ready: bool, cell: f64| if ready { 0.0 } else { AHEAD * cell };
+        let is_soon = |touch: &Touch<D>| {
+            !is_ahead(touch)
+                || touch.gap < SOON * search.dt * relative_velocity(bodies, obstacles, touch).norm()
+        };
         let pairs = &self.pairs[self.pairs.partition_point(|pair| (pair.body as usize) < a)..];
         for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
             let b = pair.partner as usize;
-            if pair.gap <= self.moved[a] + self.moved[b] && !is_known(pair.point, bodies[b].body) {
-                touches.extend(point(pair.point).come_to(b, pair.place));
+            let cell = bodies[a].interior.form.cell.min(bodies[b].interior.form.cell);
+            let ahead = ahead(search.ready[a] && search.ready[b], cell);
+            if pair.gap - ahead <= self.moved[a] + self.moved[b] && !is_known(pair.point, bodies[b].body) {
+                touches.extend(point(pair.point).come_to((b, ahead), pair.place).filter(is_soon));
             }
         }
         let pairs = &self.at_obstacles[self.at_obstacles.partition_point(|pair| (pair.body as usize) < a)..];
         for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
             let (_, r, moved) = self.beside[pair.beside as usize];
-            if pair.gap <= self.moved[a] + moved && !is_known(pair.point, obstacles[r].body()) {
+            let ahead = ahead(search.ready[a], bodies[a].interior.form.cell);
+            if pair.gap - ahead <= self.moved[a] + moved && !is_known(pair.point, obstacles[r].body()) {
                 let point = point(pair.point);
-                touches.extend(point.in_obstacle((r, obstacles[r]), point.fresh(obstacles[r].body())));
+                let fresh = point.fresh(obstacles[r].body());
+                touches.extend(point.in_obstacle((r, obstacles[r], ahead), fresh).filter(is_soon));
             }
         }
         touches.sort_by_key(|touch| touch.memory.key());
@@ -264,7 +303,8 @@ impl<const D: usize> Seen<'_, '_, D> {
             Some(seen) if seen.distance > 0.0 => (CERTAIN * seen.distance, seen.place),
             _ => (f64::NEG_INFINITY, start),
         };
-        let far = SKIN * (a.interior.form.cell + other.interior.form.cell);
+        let [own, others] = [a, other].map(|body| body.interior.form.cell);
+        let far = SKIN * (own + others) + AHEAD * own.min(others);
         (gap <= far).then_some(Pair { body, point, partner, gap, place })
     }
 
@@ -457,12 +497,12 @@ impl<const D: usize> Point<'_, '_, D> {
         }
     }
 
-    /// Looks whether it has come to touch a neighbour that is undeformed about there; if so it is sought from the nearest
-    /// point of the neighbour's surface, whatever was known before.
-    fn come_to(&self, b: usize, about: Vector<f64, D>) -> Option<Touch<D>> {
+    /// Looks whether it has come to touch a neighbour that is undeformed about there, or to lie less than so far `ahead`
+    /// of it [m]; if so it is sought from the nearest point of the neighbour's surface, whatever was known before.
+    fn come_to(&self, (b, ahead): (usize, f64), about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
-        let found = Vector::<f64, D>::of(self.in_body(b, memory(about))?.memory.place);
+        let found = Vector::<f64, D>::of(self.in_body((b, ahead), memory(about))?.memory.place);
         let reach = AROUND * partner.interior.form.cell;
         let is_near = |point: &u32| (partner.surface[*point as usize].place - found).norm() < reach;
         let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
@@ -475,11 +515,11 @@ impl<const D: usize> Point<'_, '_, D> {
         let nearest = all.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         let near = NEAR * body.interior.form.cell.max(partner.interior.form.cell);
         let (_, nearest) = nearest.filter(|(square, _)| *square < near * near)?;
-        self.in_body(b, memory(partner.surface[nearest as usize].place))
+        self.in_body((b, ahead), memory(partner.surface[nearest as usize].place))
     }
 
     /// Where it lies in a partner, sought from where it did before; of itself what lies far from a place of its own.
-    fn in_body(&self, b: usize, before: Memory) -> Option<Touch<D>> {
+    fn in_body(&self, (b, ahead): (usize, f64), before: Memory) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let start = Vector::of(before.place);
         let toward = Some(normal(body, self.number));
@@ -487,7 +527,7 @@ impl<const D: usize> Point<'_, '_, D> {
         let seen = look((&*partner.interior, partner.shape), self.at - away, start, toward)?;
         let own = body.surface[self.number].place;
         let is_beside = self.a == b && (seen.place - own).norm() <= APART * body.interior.form.cell;
-        if seen.distance >= 0.0 || is_beside {
+        if seen.distance >= ahead || is_beside {
             return None;
         }
         let (h, k) = (body.interior.form.cell, partner.interior.form.cell);
@@ -507,9 +547,13 @@ impl<const D: usize> Point<'_, '_, D> {
         self.lengths.away(nodes.at(&nodes.form.weights(start), &nodes.places), self.at)
     }
 
-    fn in_obstacle(&self, (r, obstacle): (usize, &dyn Obstacle), memory: Memory) -> Option<Touch<D>> {
+    fn in_obstacle(
+        &self,
+        (r, obstacle, ahead): (usize, &dyn Obstacle, f64),
+        memory: Memory,
+    ) -> Option<Touch<D>> {
         let (level, away) = nearest(obstacle, self.at);
-        if level.distance.is_nan() || level.distance >= 0.0 {
+        if level.distance.is_nan() || level.distance >= ahead {
             return None;
         }
         let body = &self.bodies[self.a];

@@ -88,7 +88,10 @@ impl<const D: usize> Meeting<D> {
             .collect();
         let rule = |_: &Touch<D>| friction;
         let all = (&bodies[..], &grounds[..]);
-        let mut touches = find(all, &self.known, &|_, _| true, &mut self.neighbours, self.lengths);
+        let ready = vec![true; bodies.len()];
+        let search =
+            Search { known: &self.known, meet: &|_, _| true, lengths: self.lengths, ready: &ready, dt };
+        let (mut touches, _) = find(all, search, &mut self.neighbours);
         self.rubbed += parted(&self.known, &touches).map(|memory| memory.energy).sum::<f64>();
         begin(&bodies, &grounds, &mut touches, dt);
         press(&mut bodies, &mut touches, &rule);

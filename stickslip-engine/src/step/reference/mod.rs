@@ -49,7 +49,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Touch,
+    Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Search, Touch,
     approach, begin, find, follow, parted, press, slip,
 };
 use stickslip_reference::interior::{Interior, Straining, strain};
@@ -159,6 +159,10 @@ const PIERCED: f64 = 1.0;
 /// How much of a cell a point comes deeper into its partner in a step, at most: what strikes is stiffer within a step
 /// than waves said.
 const LANDING: f64 = 0.05;
+
+/// Transits of a wave for which steps stay short once a body has touched, or will soon: each time that steps jump while
+/// a body bounces it gains what it moves in the difference, v dt times its weight.
+const LINGERS: f64 = 1000.0;
 
 /// The usual Courant number, which bounds are measured by.
 const USUAL: f64 = 0.4;
@@ -340,19 +344,24 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             meets(settings.references[a].body, other)
         };
         let known = &state.references.touching;
-        let mut touches = find((&bodies, &obstacles), known, &meet, neighbours, settings.lengths);
-        // A step in which a body comes to touch is too long for its layer: that presses from the next one on.
         let layers = &mut state.references.layers;
         layers.resize(bodies.len(), Layers::default());
         let before = layers.clone();
+        let ready: Vec<bool> = before.iter().map(|layers| layers.lingers > 0.0).collect();
+        let search = Search { known, meet: &meet, lengths: settings.lengths, ready: &ready, dt };
+        let (mut touches, soon) = find((&bodies, &obstacles), search, neighbours);
+        let lingers = |side: usize| LINGERS * settings.references[side].transit + dt;
+        soon.into_iter().for_each(|side| layers[side].lingers = lingers(side));
+        // Where it comes unforeseen, a step in which a body comes to touch is too long for its layer: that presses from
+        // the next one on.
         let mut waiting: Vec<Touch<D>> = Vec::new();
         touches.retain_mut(|touch| {
             let sides = touch.sides();
             if touch.memory.age == 0.0 && sides.iter().any(|&side| before[side].carried) {
                 touch.memory.age = f64::MIN_POSITIVE;
             }
-            sides.iter().for_each(|&side| layers[side].lingers = settings.references[side].transit + dt);
-            let presses = sides.iter().all(|&side| before[side].lingers > 0.0) || touch.memory.age > 0.0;
+            sides.iter().for_each(|&side| layers[side].lingers = lingers(side));
+            let presses = sides.iter().all(|&side| ready[side]) || touch.memory.age > 0.0;
             if !presses {
                 waiting.push(*touch);
             }
@@ -438,7 +447,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         });
         let mut store = |side: usize, energy: f64| {
             layers[side].energy += energy;
-            layers[side].lingers = settings.references[side].transit;
+            layers[side].lingers = LINGERS * settings.references[side].transit;
         };
         for touch in &*touches {
             match touch.met {
