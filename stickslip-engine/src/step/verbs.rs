@@ -13,8 +13,9 @@ use crate::contact::{ContactUse, Near, Solve, TimeStep};
 use crate::door::StepError;
 use crate::grid::{Blocks, Disjoint, Lattice, Node, locate, node_at, nodes_per_block};
 use crate::lanes::{Laned, Processor};
+use crate::particles::{ColumnStart, spin_entries};
 use crate::pass::{FaultKind, FaultReport, Found, ParticleFault, ParticleLoop, Pass, Verbs};
-use crate::tensor::{Matrix, Vector};
+use crate::tensor::{Matrix, Vector, cross};
 use crate::threads::{each, each_of};
 use crate::transfer::{SETTLES_EVERY, Share, begin_filter, end_filter, filter_once_more, filters, settles};
 use std::time::Instant;
@@ -458,6 +459,36 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 }
 
+/// Turns the deformations of a body's particles on by the rotation of a step, and gives all of them a spin.
+fn turn_particles<T: Laned, const D: usize>(body: &mut Body<T, D>, turn: &Matrix<T>, spin: Vector<T, 3>) {
+    for k in 0..spin_entries(D) {
+        body.particles.line_mut(ColumnStart::<D>::SPIN + k).fill(spin[3 - spin_entries(D) + k]);
+    }
+    let (count, columns) = (body.particles.len(), body.particles.open());
+    for column in 0..D {
+        let row = |row: usize| ColumnStart::<D>::DEFORMATION + D * row + column;
+        for p in 0..count {
+            // SAFETY: the particle exists, and nobody else uses it.
+            let at = |i: usize| unsafe { columns.at(row(i), p) };
+            // SAFETY: as above.
+            let of = |i: usize| if i < D { unsafe { *at(i) } } else { T::ZERO };
+            let before = [of(0), of(1), of(2)];
+            for i in 0..D {
+                let [a, b, c] = turn.0[i];
+                let after = a.times_plus(before[0], b.times_plus(before[1], c * before[2]));
+                // SAFETY: as above.
+                unsafe { *at(i) = after };
+            }
+        }
+    }
+    if D == 2 {
+        body.particles
+            .line_mut(ColumnStart::<D>::DEFORMATION + 4)
+            .iter_mut()
+            .for_each(|f| *f = turn.0[2][2] * *f);
+    }
+}
+
 /// Moves a body, if it is rigid, with its particles; says what it found, and how many of them changed their cells.
 fn move_rigid_body<T: Laned, const D: usize>(
     kernels: &Kernels<T, D>,
@@ -470,32 +501,56 @@ fn move_rigid_body<T: Laned, const D: usize>(
     let dt = dt.f64();
     let rotation = motion.rotation(dt);
     let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
-    let (mut found, mut moved_on) = (Found::NOTHING, 0);
-    for p in 0..body.particles.len() {
-        let mut particle = body.particles.get(p);
-        let (start, half_sides) = body.particles.place(p);
-        let position = particle.position.space();
-        let moved = Vector::of(motion.moved(position, &rotation, dt));
-        let kind = if !moved.is_finite() {
-            Some(FaultKind::NotFinite)
-        } else {
-            particle.velocity = Vector::of(motion.velocity_at(position));
-            particle.spin = spin::<T, D>(motion.spin());
-            particle.position = moved;
-            particle.deformation = turn * particle.deformation;
-            kernels.escaped((moved, half_sides), lattice, domain).then_some(FaultKind::Escaped)
-        };
-        body.particles.set(p, &particle);
+    turn_particles(body, &turn, spin::<T, D>(motion.spin()));
+    let (center, velocity, spin) = (motion.center, motion.velocity(), motion.spin());
+    let (mut fastest, mut moved_on, mut finite) = (T::ZERO, 0, true);
+    let mut bounds = [Vector([T::of(f64::INFINITY); D]), Vector([T::of(f64::NEG_INFINITY); D])];
+    let (count, columns) = (body.particles.len(), body.particles.open());
+    for p in 0..count {
+        // SAFETY: the particle exists, and nobody else uses it.
+        let at = |column: usize, k: usize| unsafe { columns.at(column + k, p) };
+        // SAFETY: as above.
+        let start = Vector::<T, D>::from_fn(|k| unsafe { *at(ColumnStart::<D>::POSITION, k) });
+        let arm: [f64; 3] = std::array::from_fn(|k| if k < D { start[k].f64() } else { 0.0 } - center[k]);
+        let swing = cross(spin, arm);
+        let (mut moved, mut speed) = (start, T::ZERO);
+        for k in 0..D {
+            let [a, b, c] = rotation.0[k];
+            moved[k] = T::of(center[k] + velocity[k] * dt + (a * arm[0] + b * arm[1] + c * arm[2]));
+            let v = T::of(velocity[k] + swing[k]);
+            // SAFETY: as above.
+            unsafe {
+                *at(ColumnStart::<D>::POSITION, k) = moved[k];
+                *at(ColumnStart::<D>::VELOCITY, k) = v;
+            }
+            bounds[0][k] = bounds[0][k].min(moved[k]);
+            bounds[1][k] = bounds[1][k].max(moved[k]);
+            speed += v * v;
+        }
+        finite &= moved.is_finite();
+        fastest = fastest.max(speed);
         // Without a grid there are no lists of cells.
         if is_listed {
-            let home = |place| (kernels.home)(lattice, (place, half_sides));
-            moved_on += u32::from(home(particle.position) != home(start));
+            let home = |place| (kernels.home)(lattice, (place, body.particles.half_sides(p)));
+            moved_on += u32::from(home(moved) != home(start));
         }
-        let fault =
-            kind.map(|kind| ParticleFault { body: number, particle: p, number: particle.number, kind });
-        // No wave runs in a rigid body.
-        let speed = particle.velocity.dot(particle.velocity);
-        found = found.and(Found { fault, signal: signal_speed([T::ZERO, speed]) });
+    }
+    // No wave runs in a rigid body.
+    let mut found = Found { fault: None, signal: signal_speed([T::ZERO, fastest]) };
+    let escapes =
+        |corner: &Vector<T, D>| kernels.escaped((*corner, body.particles.half_sides(0)), lattice, domain);
+    if !finite || count > 0 && bounds.iter().any(escapes) {
+        for p in 0..count {
+            let (position, half_sides) = body.particles.place(p);
+            let kind = if !position.is_finite() {
+                Some(FaultKind::NotFinite)
+            } else {
+                kernels.escaped((position, half_sides), lattice, domain).then_some(FaultKind::Escaped)
+            };
+            let own = body.particles.numbers()[p];
+            let fault = kind.map(|kind| ParticleFault { body: number, particle: p, number: own, kind });
+            found = found.and(Found { fault, ..Found::NOTHING });
+        }
     }
     motion.advance(&rotation, dt);
     body.motion = Some(motion);
