@@ -278,11 +278,13 @@ pub struct Pose {
 
 impl Pose {
     /// A direction in the body as it is now.
+    #[inline]
     pub fn turned(&self, direction: [f64; 3]) -> [f64; 3] {
         self.orientation.times(direction)
     }
 
     /// Where the centre was at the start [m].
+    #[inline]
     pub fn begun(&self) -> [f64; 3] {
         self.start
     }
@@ -293,6 +295,7 @@ impl Pose {
     }
 
     /// Where a point of the body is now that was at `place` at the start [m].
+    #[inline]
     pub fn now(&self, place: [f64; 3]) -> [f64; 3] {
         let turn = &self.orientation.0;
         std::array::from_fn(|i| {
@@ -301,6 +304,7 @@ impl Pose {
     }
 
     /// Where the point of the body was at the start that is here now [m].
+    #[inline]
     pub fn start(&self, position: [f64; 3]) -> [f64; 3] {
         let turn = &self.orientation.0;
         std::array::from_fn(|i| {

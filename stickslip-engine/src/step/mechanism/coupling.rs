@@ -108,7 +108,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
         let (mut settled, mut found) = (false, None);
         for _ in 0..MAX_SEARCHES {
             let sought: Vec<f64> = mechanism.bodies.iter().map(|free| free.speed(bodies)).collect();
-            let contacts = found.take().unwrap_or_else(|| self.contacts(bodies, dt));
+            let contacts = found.take().unwrap_or_else(|| self.contacts(bodies, mechanism, dt));
             self.find_touches(contacts, bodies, mechanism, dt);
             for free in &mut mechanism.bodies {
                 free.momenta = free.target;
@@ -133,7 +133,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             }
             // Something always does in a packing; rarely it meets what was not looked at.
             if packed(mechanism.touches.len()) {
-                let contacts = self.contacts(bodies, dt);
+                let contacts = self.contacts(bodies, mechanism, dt);
                 if !missed(&contacts, bodies, mechanism, dt) {
                     break;
                 }
@@ -373,8 +373,9 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
     }
 
     /// Where rigid bodies touch or may in this step.
-    fn contacts(&self, bodies: &[Body<T, D>], dt: f64) -> Vec<RigidContact> {
-        self.surfaces.map_or_else(Vec::new, |surfaces| surfaces.contacts(bodies, self.solve.rules, dt))
+    fn contacts(&self, bodies: &[Body<T, D>], mechanism: &mut Mechanism, dt: f64) -> Vec<RigidContact> {
+        let near = &mut mechanism.neighbours;
+        self.surfaces.map_or_else(Vec::new, |surfaces| surfaces.contacts(bodies, self.solve.rules, dt, near))
     }
 
     /// Takes up the contacts of rigid bodies in this step.
@@ -405,20 +406,25 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             ));
         }
         let Mechanism { touches, before, .. } = mechanism;
-        for touch in touches.iter_mut() {
-            let first = before.partition_point(|force| force.bodies < touch.contact.bodies);
-            let of_pair = before[first..].iter().take_while(|force| force.bodies == touch.contact.bodies);
-            let far = |force: &&TouchForce| (Vector(force.place) - Vector(touch.contact.place)).norm();
-            touch.slipped(of_pair.min_by(|a, b| far(a).total_cmp(&far(b))).map(|force| force.slip));
-        }
-        // Each force of the step before goes to the contact of its pair that is next to where it was.
-        for TouchForce { bodies, place, force, .. } in before.iter() {
-            let first = touches.partition_point(|touch| touch.contact.bodies < *bodies);
-            let count = touches[first..].iter().take_while(|touch| touch.contact.bodies == *bodies).count();
-            let far = |touch: &Touch| (Vector(touch.contact.place) - Vector(*place)).norm();
-            let of_pair = touches[first..first + count].iter_mut();
-            if let Some(touch) = of_pair.min_by(|a, b| far(a).total_cmp(&far(b))) {
-                touch.expect((Vector(*force) * dt).0);
+        // Both are in the order of pairs.
+        let mut before = &before[..];
+        for of_pair in touches.chunk_by_mut(|a, b| a.contact.bodies == b.contact.bodies) {
+            let pair = of_pair[0].contact.bodies;
+            let first = before.iter().take_while(|force| force.bodies < pair).count();
+            let count = before[first..].iter().take_while(|force| force.bodies == pair).count();
+            let (forces, rest) = before[first..].split_at(count);
+            before = rest;
+            let apart = |touch: &Touch, force: &TouchForce| {
+                (Vector(force.place) - Vector(touch.contact.place)).norm()
+            };
+            for touch in of_pair.iter_mut() {
+                let near = forces.iter().min_by(|a, b| apart(touch, a).total_cmp(&apart(touch, b)));
+                touch.slipped(near.map(|force| force.slip));
+            }
+            // Each force of the step before goes to the contact of its pair that is next to where it was.
+            for force in forces {
+                let near = of_pair.iter_mut().min_by(|a, b| apart(a, force).total_cmp(&apart(b, force)));
+                near.into_iter().for_each(|touch| touch.expect((Vector(force.force) * dt).0));
             }
         }
     }

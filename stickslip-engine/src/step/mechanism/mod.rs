@@ -18,6 +18,7 @@ mod coupling;
 mod direct;
 mod joint;
 mod layers;
+mod neighbours;
 mod row;
 mod six;
 mod sparse;
@@ -38,6 +39,7 @@ use crate::rigid::RigidMotion;
 use crate::scene::{JointKind, Motor};
 use crate::tensor::{Vector, cross};
 use joint::Link;
+use neighbours::Neighbours;
 use row::{JointRow, Row};
 use six::{Six, SixMatrix, join};
 use std::time::Instant;
@@ -62,6 +64,8 @@ pub struct Mechanism {
     touches: Vec<Touch>,
     /// What they pushed each other with in the step before, in the order of pairs.
     before: Vec<TouchForce>,
+    /// Which of them are near each other.
+    neighbours: Neighbours,
     /// What they did to each other in the step.
     booked: Vec<RigidTouch>,
     /// When the step began [s].

@@ -2,14 +2,16 @@
 
 use super::super::build::whole;
 use super::corners::{Plain, corners};
+use super::neighbours::Neighbours;
 use crate::body::Body;
 use crate::contact::Rules;
 use crate::geometry::{Bounds, Shape, SignedDistance};
 use crate::rigid::{Pose, RigidMotion};
-use crate::scene::{ContactLaw, Scene};
+use crate::scene::Scene;
 use crate::tensor::{Real, Vector, cross};
 use crate::threads::by_parts;
 use std::collections::HashSet;
+use std::ops::Range;
 
 /// Points on the surface of a body are this part of its largest extent apart at most.
 const FINEST: f64 = 1.0 / 12.0;
@@ -62,6 +64,8 @@ struct RigidSurface {
     spacing: f64,
     /// Its radius, if it is a ball or a disk [m].
     ball: Option<f64>,
+    /// Its lower and its upper corner, if it is a box in the plane whose sides are along the axes at the start [m].
+    sides: Option<[[f64; 2]; 2]>,
 }
 
 impl RigidSurface {
@@ -81,11 +85,11 @@ impl RigidSurface {
 pub struct RigidSurfaces {
     all: Vec<RigidSurface>,
     /// Bodies that a joint holds together do not touch each other.
-    joined: HashSet<[usize; 2]>,
+    pub(super) joined: HashSet<[usize; 2]>,
     /// After which length everything repeats along each axis [m]; 0 where nothing does.
-    periods: [f64; 3],
+    pub(super) periods: [f64; 3],
     /// Lower corner of the domain, from which the first period begins [m].
-    corner: [f64; 3],
+    pub(super) corner: [f64; 3],
     dimension: usize,
 }
 
@@ -136,6 +140,7 @@ impl RigidSurfaces {
                     half: [f64::INFINITY; 3],
                     spacing,
                     ball: None,
+                    sides: None,
                 };
                 return unbounded;
             };
@@ -156,6 +161,12 @@ impl RigidSurfaces {
                 _ => None,
             };
             let whole = whole::<D>(scene, index).bounds();
+            let sides = match &body.shape {
+                Shape::Box { min, max } if axes == 2 && whole.is_some() => {
+                    Some([min, max].map(|corner| [corner[0], corner[1]]))
+                }
+                _ => None,
+            };
             let half = whole.map_or([f64::INFINITY; 3], |whole| whole.size().map(|size| 0.5 * size));
             let corners = corners(&body.shape, spacing, axes);
             RigidSurface {
@@ -169,6 +180,7 @@ impl RigidSurfaces {
                 half,
                 spacing,
                 ball,
+                sides,
             }
         };
         let rigid = scene.bodies.iter().enumerate().filter(|(_, body)| body.is_rigid());
@@ -191,74 +203,33 @@ impl RigidSurfaces {
     /// Each point of a body's surface that is near another body is moved along its own surface, by no more than points
     /// are apart, to where it is nearest to the other one. Of a flat contact the points at its rim stay, which carry any
     /// force and moment that all of them can. Two balls touch on the line of their centres, and no point is looked at.
+    /// `neighbours` say which pairs to look at.
     pub fn contacts<T: Real, const D: usize>(
         &self,
         bodies: &[Body<T, D>],
         rules: &Rules<T>,
         dt: f64,
+        neighbours: &mut Neighbours,
     ) -> Vec<RigidContact> {
         let placed: Vec<PlacedSurface<T, D>> =
             self.all.iter().map(|surface| PlacedSurface::new(surface, &bodies[surface.body], dt)).collect();
-        // Along x, then by the balls around them.
-        let order = self.along_x(&placed);
-        let (mut near, mut seen) = (Vec::new(), HashSet::new());
-        for (rank, one) in order.iter().enumerate() {
-            for other in order[rank + 1..].iter().take_while(|other| other.lower <= one.upper) {
-                let [i, j] = [one.rank.min(other.rank), one.rank.max(other.rank)];
-                let pair = [&placed[i], &placed[j]];
-                let free = pair.iter().any(|placed| placed.motion.as_free().is_some());
-                if i == j || !free || !may_touch(pair, self.nearest(pair)) {
-                    continue;
-                }
-                let [a, b] = pair.map(|placed| placed.surface.body);
-                let rule = rules.rule(rules.number(a, b));
-                // Where there are images, a pair may be met twice.
-                let mut met = || self.periods[0] > 0.0 && !seen.insert([i, j]);
-                if !self.joined.contains(&[a, b]) && rule.law != ContactLaw::None && !met() {
-                    near.push(Near { pair, bonds: rule.friction.bonds() });
-                }
-            }
+        if !neighbours.hold(&placed) {
+            *neighbours = Neighbours::of(self, &placed, rules);
         }
+        let near: Vec<Near<T, D>> = (neighbours.pairs.iter())
+            .map(|listed| Near { pair: listed.ranks.map(|rank| &placed[rank]), bonds: listed.bonds })
+            .filter(|near| may_touch(near.pair, self.nearest(near.pair)))
+            .collect();
         let parts = by_parts(near.len(), PAIRS, |part| {
             let mut found = Vec::new();
             near[part].iter().for_each(|near| self.between_images(near, &mut found));
             found
         });
-        let mut found: Vec<RigidContact> = parts.into_iter().flatten().collect();
-        // The sort is stable: contacts of a pair stay in the order in which they were found.
-        found.sort_by_key(|contact| contact.bodies);
-        found
-    }
-
-    /// The parts of x that surfaces and, across its faces, their images take, in ascending order of where they begin.
-    fn along_x<T: Real, const D: usize>(&self, placed: &[PlacedSurface<T, D>]) -> Vec<AlongX> {
-        let (period, corner) = (self.periods[0], self.corner[0]);
-        let mut all = Vec::with_capacity(placed.len());
-        for (rank, surface) in placed.iter().enumerate() {
-            let half = surface.reach + surface.way;
-            let part = |x: f64| AlongX {
-                lower: x - surface.reach - surface.way,
-                upper: x + surface.reach + surface.way,
-                rank,
-            };
-            let x = surface.center[0];
-            if period == 0.0 || !half.is_finite() {
-                all.push(part(x));
-            } else if surface.body.whole.is_joined(0) {
-                all.push(AlongX { lower: f64::NEG_INFINITY, upper: f64::INFINITY, rank });
-            } else {
-                let x = corner + (x - corner).rem_euclid(period);
-                all.push(part(x));
-                all.extend((x - half < corner).then(|| part(x + period)));
-                all.extend((x + half > corner + period).then(|| part(x - period)));
-            }
-        }
-        all.sort_by(|a, b| a.lower.total_cmp(&b.lower));
-        all
+        parts.into_iter().flatten().collect()
     }
 
     /// From the second of two bodies to its image that is nearest to the first [m]. What has no bounds is everywhere.
-    fn nearest<T, const D: usize>(&self, [a, b]: [&PlacedSurface<T, D>; 2]) -> [f64; 3] {
+    pub(super) fn nearest<T, const D: usize>(&self, [a, b]: [&PlacedSurface<T, D>; 2]) -> [f64; 3] {
         let bounded = a.reach.is_finite() && b.reach.is_finite();
         std::array::from_fn(|k| match self.periods[k] {
             period if period > 0.0 && bounded => -period * ((b.center[k] - a.center[k]) / period).round(),
@@ -326,6 +297,9 @@ impl RigidSurfaces {
             let seen = one.pose.start(other.center);
             let counts = counts(one, other);
             let limit = margin + one.surface.spacing;
+            if one.is_beyond(other, limit) {
+                continue;
+            }
             let (reach, box_around) = (other.reach + limit, other.surface.half.map(|half| half + limit));
             let turn = other.pose.orientation.transpose() * one.pose.orientation;
             let outside = |off: Vector<f64, 3>| {
@@ -382,11 +356,20 @@ impl RigidSurfaces {
             let by_corners = one.surface.plain == Some(Plain::Box) && other.surface.plain.is_some() && !bonds;
             let first = if by_corners { points.len() } else { 0 };
             let count = points.len() + if bonds { 0 } else { corners.len() } - first;
-            let parts = by_parts(count, PART, |part| {
+            let look = |part: Range<usize>, found: &mut Vec<RigidContact>| {
                 let mut last = ([0.0; 3], 0.0);
-                part.filter_map(|number| touches(first + number, &mut last)).collect()
+                found.extend(part.filter_map(|number| touches(first + number, &mut last)));
+            };
+            if count <= PART {
+                look(0..count, &mut near);
+                continue;
+            }
+            let parts = by_parts(count, PART, |part| {
+                let mut found = Vec::new();
+                look(part, &mut found);
+                found
             });
-            near.extend(parts.into_iter().flat_map(|part: Vec<_>| part));
+            near.extend(parts.into_iter().flatten());
         }
         let alike = ALIKE * a.surface.spacing.min(b.surface.spacing);
         reduce(near, alike, self.dimension, found);
@@ -395,7 +378,7 @@ impl RigidSurfaces {
 
 /// How far apart two surfaces may be for the next step to matter [m].
 fn margin<T, const D: usize>([a, b]: [&PlacedSurface<T, D>; 2]) -> f64 {
-    AHEAD * (a.way + b.way)
+    a.ahead() + b.ahead()
 }
 
 /// Whether the balls around a surface and an image of another one, so far from that [m], are near enough.
@@ -421,24 +404,19 @@ fn between_balls<T, const D: usize>(
     Some(RigidContact { bodies, away: b.away, place, normal: normal.0, gap, slack: 0.0, area: 0.0 })
 }
 
-/// A part of x in which a surface, or an image of it, is.
-struct AlongX {
-    lower: f64,
-    upper: f64,
-    /// Rank of the surface among all of them.
-    rank: usize,
-}
-
 /// A surface where its body, or an image of it in a periodic domain, is now.
-struct PlacedSurface<'a, T, const D: usize> {
+pub(super) struct PlacedSurface<'a, T, const D: usize> {
     surface: &'a RigidSurface,
-    body: &'a Body<T, D>,
-    motion: &'a RigidMotion,
+    pub body: &'a Body<T, D>,
+    pub motion: &'a RigidMotion,
     pose: Pose,
+    /// Where its centre of mass was at the start and is now [m].
+    mass_center: [[f64; 3]; 2],
     /// From the body to the image [m].
     away: [f64; 3],
-    center: [f64; 3],
-    reach: f64,
+    /// The ball around it.
+    pub center: [f64; 3],
+    pub reach: f64,
     /// The longest way of its points in the step [m].
     way: f64,
 }
@@ -449,14 +427,38 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
         let pose = motion.pose();
         let (center, reach) = (pose.now(surface.center), surface.reach);
         let way = surface.way((motion, center), dt);
-        PlacedSurface { surface, body, motion, pose, away: [0.0; 3], center, reach, way }
+        let mass_center = [pose.begun(), motion.center];
+        PlacedSurface { surface, body, motion, pose, mass_center, away: [0.0; 3], center, reach, way }
     }
 
     /// An image of it.
     fn moved(&self, away: [f64; 3]) -> Self {
         let center = std::array::from_fn(|k| self.center[k] + away[k]);
-        let PlacedSurface { surface, body, motion, pose, reach, way, .. } = *self;
-        PlacedSurface { surface, body, motion, pose: pose.moved(away), away, center, reach, way }
+        let PlacedSurface { surface, body, motion, pose, mass_center: [begun, here], reach, way, .. } = *self;
+        let mass_center = [begun, std::array::from_fn(|k| here[k] + away[k])];
+        PlacedSurface { surface, body, motion, pose: pose.moved(away), mass_center, away, center, reach, way }
+    }
+
+    /// Index of its body.
+    pub fn index(&self) -> usize {
+        self.surface.body
+    }
+
+    /// How far from another surface that stands still it matters in the step [m].
+    pub fn ahead(&self) -> f64 {
+        AHEAD * self.way
+    }
+
+    /// Whether all of it is out of the box around another surface that is larger by so much on all sides [m].
+    fn is_beyond(&self, other: &PlacedSurface<T, D>, limit: f64) -> bool {
+        let (off, half) = (Vector(self.center) - Vector(other.center), self.surface.half);
+        // The axes of each box as it is now.
+        let axes = [other, self].map(|one| one.pose.orientation.transpose().0);
+        (0..D).any(|k| {
+            let axis = Vector(axes[0][k]);
+            let own: f64 = (0..D).map(|j| axis.dot(Vector(axes[1][j])).abs() * half[j]).sum();
+            off.dot(axis).abs() > other.surface.half[k] + limit + own + ALIKE * self.surface.spacing
+        })
     }
 
     /// Its radius, if it is a ball or a disk and not joined to itself [m].
@@ -465,9 +467,35 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
     }
 
     /// Signed distance to its surface where it is now.
+    #[inline]
     fn level(&self, place: [f64; 3]) -> SignedDistance {
+        if let Some(sides) = self.surface.sides {
+            return self.level_of_box(sides, place);
+        }
         let level = self.body.whole.level(self.pose.start(place));
         SignedDistance { gradient: self.pose.turned(level.gradient), ..level }
+    }
+
+    /// The same of a box in the plane: most of the search for contacts in walls.
+    #[inline]
+    fn level_of_box(&self, [min, max]: [[f64; 2]; 2], place: [f64; 3]) -> SignedDistance {
+        let (turn, [begun, here]) = (&self.pose.orientation.0, self.mass_center);
+        let off = [place[0] - here[0], place[1] - here[1]];
+        let [(a, a_outward), (b, b_outward)] = [0, 1].map(|k| {
+            let x = begun[k] + (turn[0][k] * off[0] + turn[1][k] * off[1]);
+            let (below, above) = (min[k] - x, x - max[k]);
+            if below > above { (below, -1.0) } else { (above, 1.0) }
+        });
+        let (distance, [x, y]) = if a > 0.0 && b > 0.0 {
+            let distance = (a * a + b * b).sqrt();
+            (distance, [a_outward * a / distance, b_outward * b / distance])
+        } else if b > a {
+            (b, [0.0, b_outward])
+        } else {
+            (a, [a_outward, 0.0])
+        };
+        let gradient = [turn[0][0] * x + turn[0][1] * y, turn[1][0] * x + turn[1][1] * y, 0.0];
+        SignedDistance { distance, gradient }
     }
 
     /// The point of its surface next to `place`.
@@ -519,6 +547,10 @@ impl<'a, T, const D: usize> PlacedSurface<'a, T, D> {
             let to = self.onto(to);
             let there = other.level(to.0);
             if there.distance >= level.distance {
+                // A corner, to which shorter steps lead back as well.
+                if (to - at).norm() < FOUND * spacing {
+                    break;
+                }
                 step *= 0.25;
                 continue;
             }
