@@ -119,7 +119,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
             // Those that break loose have less friction from then on.
             for _ in 0..MAX_BREAKS {
                 // With velocities that are not found yet the next step takes it up.
-                if !self.judge_slip(bodies, mechanism) || !settled && packed(mechanism.touches.len()) {
+                if !self.judge_slip(bodies, mechanism) || !settled && packed(&mechanism.touches) {
                     break;
                 }
                 settled = self.iterate(bodies, mechanism, &touched, listed);
@@ -132,7 +132,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 break;
             }
             // Something always does in a packing; rarely it meets what was not looked at.
-            if packed(mechanism.touches.len()) {
+            if packed(&mechanism.touches) {
                 let contacts = self.contacts(bodies, mechanism, dt);
                 if !missed(&contacts, bodies, mechanism, dt) {
                     break;
@@ -196,7 +196,7 @@ impl<T: Real, const D: usize> Coupling<'_, T, D> {
                 return held;
             }
             if round == 0 && !mechanism.touches.is_empty() {
-                first = 10.0 * tolerance_of(mechanism.touches.len()) * moved;
+                first = 10.0 * tolerance_of(&mechanism.touches) * moved;
             }
             if moved <= tolerance * speed + if placed { round_off + first } else { 0.0 } {
                 return held;

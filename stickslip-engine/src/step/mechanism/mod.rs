@@ -250,7 +250,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     pub(super) fn longest_turns(&self) -> impl Iterator<Item = (usize, f64)> {
         let packed = self.settings.joints.is_empty()
             && self.needs_no_grid()
-            && sweeps::packed(self.state.touch_forces.len());
+            && sweeps::many(self.state.touch_forces.len());
         let motions =
             self.settings.rigid.iter().map(|&body| (body, self.state.bodies[body].motion.as_deref()));
         let free =

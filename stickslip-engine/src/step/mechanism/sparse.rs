@@ -130,19 +130,20 @@ impl<'a, const N: usize> BlockMatrix<'a, N> {
             let Some(inverse) = inverse(&diagonal[place]) else { return false };
             diagonal[place] = inverse;
             let (first, later) = (pattern.starts[place], pattern.later(place));
-            for (i, &row) in later.iter().enumerate() {
-                lower[first + i] = product(&lower[first + i], &inverse);
-                let left = lower[first + i];
-                for (j, &column) in later.iter().enumerate() {
-                    let change = product(&left, &upper[first + j]);
-                    let block = match row.cmp(&column) {
-                        std::cmp::Ordering::Equal => &mut diagonal[row],
-                        std::cmp::Ordering::Less => &mut upper[pattern.block(row, column)],
-                        std::cmp::Ordering::Greater => &mut lower[pattern.block(column, row)],
-                    };
-                    for (line, change) in block.iter_mut().zip(&change) {
-                        line.iter_mut().zip(change).for_each(|(x, change)| *x -= change);
-                    }
+            for block in &mut lower[first..first + later.len()] {
+                *block = product(block, &inverse);
+            }
+            for (i, &early) in later.iter().enumerate() {
+                let [left, above] = [lower[first + i], upper[first + i]];
+                take_product(&mut diagonal[early], &left, &above);
+                // Both lists ascend.
+                let mut places = pattern.starts[early]..pattern.starts[early + 1];
+                for (j, &late) in later.iter().enumerate().skip(i + 1) {
+                    let found = places.find(|&place| pattern.later[place] == late);
+                    let block = found.expect("what is left of the neighbours are neighbours of each other");
+                    let [beside, right] = [lower[first + j], upper[first + j]];
+                    take_product(&mut upper[block], &left, &right);
+                    take_product(&mut lower[block], &beside, &above);
                 }
             }
         }
@@ -185,6 +186,7 @@ pub fn times<const N: usize>(a: &Block<N>, x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|k| dot(&a[k], x))
 }
 
+#[inline(always)]
 fn product<const N: usize>(a: &Block<N>, b: &Block<N>) -> Block<N> {
     let mut c = [[0.0; N]; N];
     for (c, a) in c.iter_mut().zip(a) {
@@ -193,6 +195,15 @@ fn product<const N: usize>(a: &Block<N>, b: &Block<N>) -> Block<N> {
         }
     }
     c
+}
+
+/// C -= A B
+#[inline(always)]
+fn take_product<const N: usize>(c: &mut Block<N>, a: &Block<N>, b: &Block<N>) {
+    let change = product(a, b);
+    for (line, change) in c.iter_mut().zip(&change) {
+        line.iter_mut().zip(change).for_each(|(x, change)| *x -= change);
+    }
 }
 
 /// The inverse of a block, by elimination with the largest entry left of each column; `None` if it has none.

@@ -74,12 +74,17 @@ pub struct Contacts {
     pub grips: Vec<Grip>,
     /// Rows of each.
     width: usize,
+    /// Whether they are those of a packing.
+    packed: bool,
+    /// How closely their impulses are found.
+    tolerance: f64,
 }
 
 impl Contacts {
     fn of(touches: &[Touch]) -> Self {
         let width = touches.first().map_or(1, |touch| 1 + touch.tangents.len());
-        Contacts { grips: touches.iter().map(|touch| touch.grip).collect(), width }
+        let (packed, tolerance) = (packed(touches), tolerance(touches));
+        Contacts { grips: touches.iter().map(|touch| touch.grip).collect(), width, packed, tolerance }
     }
 
     /// The rows of a contact, behind so many of joints.
@@ -107,6 +112,21 @@ impl Sweep {
         row.give(change, changes);
         self.moved = self.moved.max((change * row.yields).abs());
         self.largest = self.largest.max((impulse * row.yields).abs()).max(row.off.abs());
+    }
+
+    /// Those of all contacts, of so many rows each.
+    fn push_all<const N: usize, const ROWS: usize>(
+        &mut self,
+        grips: &[Grip],
+        rows: &mut [Packed<N>],
+        changes: &mut [[f64; N]],
+    ) {
+        for (own, grip) in rows.chunks_exact_mut(ROWS).zip(grips) {
+            let own: &mut [Packed<N>; ROWS] = own.try_into().expect("chunks are as long as this");
+            if own[0].yields > 0.0 {
+                self.push(grip, own, changes);
+            }
+        }
     }
 
     /// The impulses of one contact, with all others as they are.
@@ -227,6 +247,9 @@ const TOUCHING: [f64; 2] = [1e-9, 1e-6];
 const AT_LAST: f64 = 1e-5;
 /// Sweeps that change this much more than the least go on from where they are, and along no direction.
 const STRAYED: f64 = 10.0;
+/// In a packing they end where so many of them leave more than this part of what was left before.
+const PATIENCE: usize = 40;
+const WORTH: f64 = 0.7;
 const FEW: usize = 100;
 /// Sweeps before the first direct step.
 const FIRST_SWEEPS: usize = 12;
@@ -237,21 +260,48 @@ const FEWEST_ROUNDS: usize = 10;
 const ROWS_OF_ALL_ROUNDS: usize = 30_000;
 /// More rows than these are left to sweeps.
 const MOST_ROWS: usize = 7_000;
+/// In a packing none is tried while sweeps change velocities by more than this part of the largest: then much begins or
+/// ends to push or to slip.
+const NEARLY: f64 = 5e-5;
 /// In a packing a direct step pays that leaves less than this part of what was left before. Where much begins or ends
 /// to push or to slip at once, as at an impact, sweeps are as near after the same time.
 const PAYS: f64 = 0.7;
 /// A direct step may take so many products of blocks a row: then it costs as much as some ten sweeps.
 const AFFORDABLE: usize = 40;
 
-/// Whether so many contacts are those of a packing.
-pub fn packed(touches: usize) -> bool {
+/// Whether so many contacts may be those of a packing.
+pub fn many(touches: usize) -> bool {
     touches > FEW
 }
 
-/// How closely the impulses of so many contacts are found.
-pub fn tolerance(touches: usize) -> f64 {
+/// Whether contacts, in the order of pairs, are those of a packing. Faces that bear on each other do not count, as long
+/// as they close no ring of free bodies: towers of any height are solved at once for little.
+pub fn packed(touches: &[Touch]) -> bool {
+    if !many(touches.len()) {
+        return false;
+    }
+    // Of each body one that it hangs together with, up to one that all of them have in common.
+    let mut parents: Vec<usize> = Vec::new();
+    let of_packing = |pair: &[Touch]| {
+        let [Some(a), Some(b)] = pair[0].normal.bodies else { return 0 };
+        (parents.len()..=a.max(b)).for_each(|next| parents.push(next));
+        let [a, b] = [a, b].map(|mut body| {
+            while parents[body] != body {
+                parents[body] = parents[parents[body]];
+                body = parents[body];
+            }
+            body
+        });
+        parents[a] = b;
+        if a == b || pair.len() == 1 { pair.len() } else { 0 }
+    };
+    many(touches.chunk_by(|a, b| a.contact.bodies == b.contact.bodies).map(of_packing).sum())
+}
+
+/// How closely the impulses of contacts are found.
+pub fn tolerance(touches: &[Touch]) -> f64 {
     match touches {
-        0 => TOLERANCE,
+        [] => TOLERANCE,
         _ => TOUCHING[usize::from(packed(touches))],
     }
 }
@@ -284,7 +334,7 @@ impl<const N: usize> Found<N> {
     /// One sweep over the rows of joints and then of contacts.
     fn sweep(&mut self, held: &[JointRow], contacts: &Contacts) -> Sweep {
         let Found { rows, changes } = self;
-        let mut sweep = Sweep { packed: packed(contacts.grips.len()), ..Sweep::default() };
+        let mut sweep = Sweep { packed: contacts.packed, ..Sweep::default() };
         let (of_joints, of_touches) = rows.split_at_mut(held.len());
         for (row, JointRow { limit, .. }) in of_joints.iter_mut().zip(held) {
             if row.yields > 0.0 {
@@ -292,10 +342,9 @@ impl<const N: usize> Found<N> {
                 sweep.set(row, wanted, changes);
             }
         }
-        for (own, grip) in of_touches.chunks_exact_mut(contacts.width).zip(&contacts.grips) {
-            if own[0].yields > 0.0 {
-                sweep.push(grip, own, changes);
-            }
+        match contacts.width {
+            2 => sweep.push_all::<N, 2>(&contacts.grips, of_touches, changes),
+            _ => sweep.push_all::<N, 3>(&contacts.grips, of_touches, changes),
         }
         sweep
     }
@@ -338,9 +387,9 @@ impl<const N: usize> Found<N> {
         round_off: f64,
     ) -> bool {
         let touches = contacts.grips.len();
-        let first = if packed(touches) { FIRST_PACKED_SWEEPS } else { FIRST_SWEEPS };
+        let Contacts { packed, tolerance: close, .. } = *contacts;
+        let first = if packed { FIRST_PACKED_SWEEPS } else { FIRST_SWEEPS };
         let rounds = (ROWS_OF_ALL_ROUNDS / self.rows.len().max(1)).clamp(FEWEST_ROUNDS, MAX_ROUNDS);
-        let close = tolerance(touches);
         let last = if touches > 0 { close.max(AT_LAST) } else { close };
         let rests = |sweep: &Sweep, tolerance: f64| sweep.moved <= tolerance * sweep.largest + round_off;
         if self.rows.len() > MOST_ROWS {
@@ -349,10 +398,13 @@ impl<const N: usize> Found<N> {
         if self.sweep_along((held, contacts), first, |sweep| rests(sweep, close)) {
             return true;
         }
-        let most = if packed(touches) { FEW_ROUNDS } else { ROUNDS };
+        let most = if packed { FEW_ROUNDS } else { ROUNDS };
         let own = inertia.iter().map(SixMatrix::part).collect();
-        if let Some(mut direct) = Direct::new(&self.rows, own, (close, AFFORDABLE * self.rows.len())) {
-            let mut least = self.sweep(held, contacts).moved;
+        let sweep = self.sweep(held, contacts);
+        let near = !packed || sweep.moved <= NEARLY * sweep.largest;
+        let new = || Direct::new(&self.rows, own, (close, AFFORDABLE * self.rows.len()));
+        if let Some(mut direct) = near.then(new).flatten() {
+            let mut least = sweep.moved;
             let mut best = self.clone();
             while direct.rounds < rounds {
                 let before = self.clone();
@@ -361,14 +413,14 @@ impl<const N: usize> Found<N> {
                     *self = before;
                 }
                 let sweep = self.sweep(held, contacts);
-                if rests(&sweep, if solved && packed(touches) { last } else { close }) {
+                if rests(&sweep, if solved && packed { last } else { close }) {
                     return true;
                 }
                 let pays = solved && sweep.moved < PAYS * least;
                 if sweep.moved < least {
                     (best, least) = (self.clone(), sweep.moved);
                 }
-                if packed(touches) && !pays {
+                if packed && !pays {
                     break;
                 }
             }
@@ -386,6 +438,7 @@ impl<const N: usize> Found<N> {
     ) -> bool {
         let mut direction = Direction::new(self.rows.len(), self.changes.len());
         let (mut impulses, mut changes, mut least) = (Vec::new(), Vec::new(), f64::INFINITY);
+        let mut leasts = Vec::new();
         for number in 1..=most {
             impulses.clear();
             impulses.extend(self.rows.iter().map(|row| row.impulse));
@@ -395,6 +448,10 @@ impl<const N: usize> Found<N> {
                 return true;
             }
             least = least.min(sweep.moved);
+            leasts.push(least);
+            if contacts.packed && number > PATIENCE && least > WORTH * leasts[number - 1 - PATIENCE] {
+                return false;
+            }
             if sweep.moved > STRAYED * least {
                 direction.forget();
             } else if number < most {
@@ -450,7 +507,8 @@ mod tests {
         let mut changes = vec![pack(&join([0.0, -FALL, 0.0], [0.0; 3])); count];
         changes.push([0.0; 3]);
         let mut found = Found { rows: rows.collect(), changes };
-        let contacts = Contacts { grips: vec![grip; 3 * count], width: 2 };
+        let contacts =
+            Contacts { grips: vec![grip; 3 * count], width: 2, packed: false, tolerance: TOUCHING[0] };
         assert!(found.settle((&[], &contacts), &inertia, 0.0), "it does not rest");
         let fastest = found.changes.iter().flatten().fold(0.0_f64, |most, v| most.max(v.abs()));
         assert!(fastest < 1e-4 * FALL, "{fastest}");
@@ -472,7 +530,7 @@ mod tests {
                 Packed::<3>::new(&row, 1)
             });
             let begun = Found { rows: rows.collect(), changes: vec![[push, -FALL, spin], [0.0; 3]] };
-            let contacts = Contacts { grips: vec![grip; 3], width: 2 };
+            let contacts = Contacts { grips: vec![grip; 3], width: 2, packed: false, tolerance: TOUCHING[0] };
             let (mut swept, mut solved) = (begun.clone(), begun);
             for _ in 0..20_000 {
                 swept.sweep(&[], &contacts);
