@@ -45,7 +45,7 @@ fn moved(simulation: &mut dyn Simulation) -> [f64; 2] {
 
 #[test]
 fn towers_stand_whatever_their_height() {
-    for count in [50, 80, 100] {
+    for count in [50_u8, 80, 100] {
         let mut tower = stack(&format!(
             r#"[[bodies]]
             name = "box {{i}}"
@@ -53,7 +53,7 @@ fn towers_stand_whatever_their_height() {
             shape.box = {{ min = [-0.1, "0.1 * i"], max = [0.1, "0.1 * (i + 1)"] }}"#
         ));
         let [far, kinetic] = moved(&mut *tower);
-        assert!(far < 1e-6, "{count}: {far}");
+        assert!(far < 1e-7 * f64::from(count), "{count}: {far}");
         assert!(kinetic < 1e-6, "{count}: {kinetic}");
         // The first step begins without forces.
         assert!(tower.ledger().unsettled_nodes <= 1, "{count}");
