@@ -6,7 +6,7 @@
 //! |---|---|
 //! | the length of the step, and what happens around it | `Simulation::step` below |
 //! | which passes a step makes, and in which order | the recipes below |
-//! | what a pass does to a particle: velocity, F and stress, position | `tile/group.rs`, from top to bottom |
+//! | what a pass does to a particle: velocity, F and stress, position | `pass/group.rs`, from top to bottom |
 //! | G2P's and P2G's sums over nodes | `interpolate`, `flow`, `moments`, `gradient`, `scatter` of [`crate::transfer`] |
 //! | the same as the equations read, one particle and node after the other | `naive.rs`, and `transfer/naive.rs` |
 //! | the stress | `respond` of a law in [`crate::material`] |

@@ -1,6 +1,6 @@
 //! The verbs of the step: what each does to a node, and which pass it makes over the particles.
 //!
-//! What a pass does to a particle is written in `tile/group.rs`, what a verb does to a node in [`Node`].
+//! What a pass does to a particle is written in `pass/group.rs`, what a verb does to a node in [`Node`].
 
 use super::Engine;
 use super::build::spin;
@@ -503,7 +503,7 @@ fn move_rigid_body<T: Laned, const D: usize>(
     let turn = Matrix::from_fn(|i, j| T::of(rotation.0[i][j]));
     turn_particles(body, &turn, spin::<T, D>(motion.spin()));
     let (center, velocity, spin) = (motion.center, motion.velocity(), motion.spin());
-    let (mut fastest, mut moved_on, mut finite) = (T::ZERO, 0, true);
+    let (mut fastest, mut moved_on, mut lost) = (T::ZERO, 0, Vec::new());
     let mut bounds = [Vector([T::of(f64::INFINITY); D]), Vector([T::of(f64::NEG_INFINITY); D])];
     let (count, columns) = (body.particles.len(), body.particles.open());
     for p in 0..count {
@@ -519,15 +519,20 @@ fn move_rigid_body<T: Laned, const D: usize>(
             moved[k] = T::of(center[k] + velocity[k] * dt + (a * arm[0] + b * arm[1] + c * arm[2]));
             let v = T::of(velocity[k] + swing[k]);
             // SAFETY: as above.
-            unsafe {
-                *at(ColumnStart::<D>::POSITION, k) = moved[k];
-                *at(ColumnStart::<D>::VELOCITY, k) = v;
-            }
+            unsafe { *at(ColumnStart::<D>::VELOCITY, k) = v };
             bounds[0][k] = bounds[0][k].min(moved[k]);
             bounds[1][k] = bounds[1][k].max(moved[k]);
             speed += v * v;
         }
-        finite &= moved.is_finite();
+        // What has no place any more is told where it was.
+        if !moved.is_finite() {
+            lost.push(p);
+            continue;
+        }
+        for k in 0..D {
+            // SAFETY: as above.
+            unsafe { *at(ColumnStart::<D>::POSITION, k) = moved[k] };
+        }
         fastest = fastest.max(speed);
         // Without a grid there are no lists of cells.
         if is_listed {
@@ -539,10 +544,10 @@ fn move_rigid_body<T: Laned, const D: usize>(
     let mut found = Found { fault: None, signal: signal_speed([T::ZERO, fastest]) };
     let escapes =
         |corner: &Vector<T, D>| kernels.escaped((*corner, body.particles.half_sides(0)), lattice, domain);
-    if !finite || count > 0 && bounds.iter().any(escapes) {
+    if !lost.is_empty() || count > 0 && bounds.iter().any(escapes) {
         for p in 0..count {
             let (position, half_sides) = body.particles.place(p);
-            let kind = if !position.is_finite() {
+            let kind = if lost.binary_search(&p).is_ok() {
                 Some(FaultKind::NotFinite)
             } else {
                 kernels.escaped((position, half_sides), lattice, domain).then_some(FaultKind::Escaped)

@@ -63,7 +63,8 @@ fn a_heap_of_rigid_disks_rests() {
     let after = centers(&*simulation);
     let sunk = before.iter().zip(&after).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f64::max);
     // What nothing resists may roll on: a disk on the floor that bears no other, and two there that bear a third, for
-    // floor, disk, third and disk are a ring of four, which turns as gears do. Three here do so at 0.45 mm/s.
+    // floor, disk, third and disk are a ring of four, which turns as gears do. Here a disk alone rolls at 0.6 mm/s, and
+    // such a ring turns at 0.03 mm/s.
     let moved = before.iter().zip(&after).filter(|(a, b)| distance(**a, **b) > 1e-4).count();
     let mut overlap = 0.0_f64;
     for i in 0..COUNT {
@@ -79,7 +80,7 @@ fn a_heap_of_rigid_disks_rests() {
         -borne / weight
     );
     assert!(overlap < 1e-3, "{overlap}");
-    assert!(sunk < 1e-4 && moved <= COUNT / 50, "{sunk} {moved}");
+    assert!(sunk < 1e-4 && moved <= 4, "{sunk} {moved}");
     assert!((borne.abs() / weight - 1.0).abs() < 1e-3, "{borne} {weight}");
 }
 
