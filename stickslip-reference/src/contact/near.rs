@@ -497,8 +497,9 @@ impl<const D: usize> Point<'_, '_, D> {
         }
     }
 
-    /// Looks whether it has come to touch a neighbour that is undeformed about there, or to lie less than so far `ahead`
-    /// of it [m]; if so it is sought from the nearest point of the neighbour's surface, whatever was known before.
+    /// Looks whether it has come to touch a neighbour that is undeformed about there, or to lie less than so far
+    /// `ahead` of it [m]; if so it is sought from the nearest point of the neighbour's surface, whatever was known
+    /// before.
     fn come_to(&self, (b, ahead): (usize, f64), about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
