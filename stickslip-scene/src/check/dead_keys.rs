@@ -3,8 +3,8 @@
 use super::rules::CountedRules;
 use super::warning::Warning;
 use crate::scene::{
-    BasisKind, Body, Changes, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior, JointKind,
-    Motor, Normal, Scene,
+    Action, BasisKind, Body, Changes, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior,
+    JointKind, Load, Motor, Normal, Scene,
 };
 
 /// What a scene says and nothing comes of, a line for each kind.
@@ -13,6 +13,7 @@ pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
         .chain(nothing_deforms(scene))
         .chain(nothing_falls(scene))
         .chain(nothing_on_the_grid(scene))
+        .chain(nothing_heats(scene))
         .chain(rigid_interiors(scene))
         .chain(overruled_drift(scene))
         .chain(overruled_motor(scene))
@@ -48,10 +49,11 @@ fn nor(others: &[&str]) -> String {
     if others.is_empty() { String::new() } else { format!(", nor do {}", others.join(", ")) }
 }
 
-/// Shape functions, transfer and stress update are of bodies that deform on the grid.
+/// Shape functions, transfer and stress update are of bodies that deform on the grid, and a courant number of bodies
+/// that deform.
 fn nothing_on_the_grid(scene: &Scene) -> Option<Warning> {
     let mut deforming = (0..scene.bodies.len()).filter(|&body| !scene.bodies[body].is_rigid()).peekable();
-    deforming.peek()?;
+    let none_deforms = deforming.peek().is_none();
     if !deforming.all(|body| scene.interior(body) == Interior::Reference) {
         return None;
     }
@@ -61,14 +63,24 @@ fn nothing_on_the_grid(scene: &Scene) -> Option<Warning> {
         ("time.transfer", time.transfer != usual.transfer),
         ("time.stress_update", time.stress_update != usual.stress_update),
         ("time.pic_share", time.pic_share != usual.pic_share),
+        ("time.courant", none_deforms && time.courant != usual.courant),
     ];
     let dead: Vec<&str> = keys.iter().filter(|(_, dead)| *dead).map(|(key, _)| *key).collect();
     let (first, others) = dead.split_first()?;
-    let why = format!(
-        "does not act{}: it is that of bodies with interior = \"grid\", and the scene has none that deform",
-        nor(others)
-    );
+    let of = if none_deforms { "that deform" } else { "with interior = \"grid\"" };
+    let none = if none_deforms { "none" } else { "none that deform" };
+    let why = format!("does not act{}: it is that of bodies {of}, and the scene has {none}", nor(others));
     Some(Warning::about(*first, why))
+}
+
+/// What a material says of heat is of bodies that something heats.
+fn nothing_heats(scene: &Scene) -> Option<Warning> {
+    let heats = |load: &Load| matches!(load.action, Action::Temperature(_));
+    let expands = scene.materials.iter().find(|material| material.thermal_expansion != 0.0)?;
+    (!scene.loads.iter().any(heats)).then(|| {
+        let key = format!("materials.{}.thermal_expansion", expands.name);
+        Warning::about(key, "does not act: no load is a temperature")
+    })
 }
 
 /// A rigid body has no interior to compute.
@@ -209,6 +221,16 @@ mod tests {
                 "time.energy_drift: does not act",
             ),
             (
+                "time = { end = 1, transfer = 'apic', courant = 0.2 }",
+                "time.transfer: does not act, nor do `time.courant`: it is that of bodies that deform, and the scene \
+                 has none",
+            ),
+            (
+                "materials.copper = { density = 1, thermal_expansion = 1e-5, neo_hookean = \
+                 { young_modulus = 9, poisson_ratio = 0 } }",
+                "materials.copper.thermal_expansion: does not act: no load is a temperature",
+            ),
+            (
                 "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3 } }]",
                 "joints[0].hinge.dashpot: does not act: the motor of `joint 1` keeps up",
             ),
@@ -232,7 +254,6 @@ mod tests {
         }
         for rest in [
             "contact = [{ friction = 0.3 }]",
-            "time = { end = 1, transfer = 'apic' }",
             "time = { end = 1, energy_drift = 0.2 }\nhealth.energy.bound = 0.3",
             "joints = [{ body = 'a', hinge = { point = [0, 0], speed = 1, dashpot = 3, limit = 2 } }]",
             "gravity = [0, -9.81]",

@@ -29,6 +29,7 @@ mod rigid_pairs;
 mod rules;
 mod settings;
 mod shapes;
+mod slits;
 mod soil;
 mod springs;
 mod supports;

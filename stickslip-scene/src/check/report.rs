@@ -10,7 +10,7 @@ use super::table::short;
 use super::warning::{NOT_RESOLVED, Warning, and_more, few};
 use super::{
     dead_keys, examine, joint_freedom, joints, locking, mass, memory, overlap, pulses, rigid_pairs, rules,
-    soil, supports, thickness,
+    slits, soil, supports, thickness,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::rigid::longest_step;
@@ -233,6 +233,7 @@ fn warnings(
         .chain(thin_rigid_bodies(scene))
         .chain(mass::warning(scene, extents))
         .chain(thickness::warning(scene))
+        .chain(slits::warning(scene))
         .chain(narrow_contacts(contacts))
         .collect()
 }
@@ -509,7 +510,8 @@ mod tests {
         };
         let of = |thickness| {
             let scene = scene(Dimension::Space, 0.1, vec![sheet(thickness)]);
-            report(&scene).expect("no problem").warnings
+            let warnings = report(&scene).expect("no problem").warnings.into_iter();
+            warnings.filter(|warning| warning.text.contains("`sheet`")).collect::<Vec<_>>()
         };
         assert!(of(0.1).is_empty());
         assert!(of(0.08)[0].text.contains("`sheet` (0.08 m);"));
