@@ -146,11 +146,6 @@ struct Part {
 /// The first rank's.
 struct Leader(Part);
 
-/// [`bytes_of`] where fields may be left out: with their names.
-fn named_bytes_of(said: &impl Serialize) -> Vec<u8> {
-    rmp_serde::to_vec_named(said).expect("memory takes what is written")
-}
-
 impl Part {
     fn new(
         scene: Arc<Scene>,
@@ -307,7 +302,7 @@ impl Part {
 
     fn save_rest(&self) -> Option<SavedState> {
         let own = self.own.save_rest()?;
-        let sums = self.ranks.tell_first(&named_bytes_of(&own.contact_sums));
+        let sums = self.ranks.tell_first(&bytes_of(&own.contact_sums));
         let contact_sums = ContactSums::merged(all_of(sums));
         Some(SavedState { contact_sums, ..own })
     }
@@ -359,7 +354,7 @@ impl Part {
         let rest = whole.as_ref().map(|whole: &Result<Box<dyn Simulation>, RestoreError>| {
             whole.as_ref().map(|whole| whole.save_rest().expect("it is whole")).map_err(RestoreError::clone)
         });
-        let said = rest.map_or_else(Vec::new, |rest| named_bytes_of(&rest));
+        let said = rest.map_or_else(Vec::new, |rest| bytes_of(&rest));
         let rest = read::<Result<SavedState, RestoreError>>(&self.ranks.hear_first(&said))?;
         let (ranks, mut whole) = (self.ranks.clone(), whole.and_then(Result::ok));
         let taken = self.take_up(&rest, &mut |show| {
@@ -728,13 +723,13 @@ impl Simulation for Leader {
         look: &mut dyn FnMut(usize, &[u8]),
     ) -> Option<Result<(), NotTakenUp>> {
         let part = self.tell_mut(&Call::BeginOnRanks(asked.to_vec(), velocities, rest.of_snapshot));
-        part.ranks.hear_first(&named_bytes_of(rest));
+        part.ranks.hear_first(&bytes_of(rest));
         Some(part.begin_on_ranks((rest, velocities), asked, look))
     }
 
     fn restore_on_ranks(&mut self, rest: &SavedState, asked: &[u8]) -> Option<Result<(), NotTakenUp>> {
         let part = self.tell_mut(&Call::RestoreOnRanks(asked.to_vec()));
-        part.ranks.hear_first(&named_bytes_of(rest));
+        part.ranks.hear_first(&bytes_of(rest));
         Some(part.restore_on_ranks(rest, asked))
     }
 }

@@ -50,6 +50,8 @@ pub trait Compiled<const D: usize>: Laned {
 macro_rules! compiled {
     ($($real:ty, $dimension:literal;)*) => {$(
         impl Compiled<$dimension> for $real {
+            // Else the compiler copies it, and with it all kernels, into each crate that calls it.
+            #[inline(never)]
             fn kernels(basis: BasisKind) -> &'static Kernels<Self, $dimension> {
                 Kernels::of(basis)
             }

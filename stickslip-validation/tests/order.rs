@@ -48,6 +48,7 @@ fn orders(errors: &[f64]) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn boxes_that_keep_their_width_are_of_second_order_until_their_width_counts() {
     for basis in ["gimp", "spline"] {
         let orders = orders(&errors("B17", Tier::Full, basis));
@@ -71,10 +72,18 @@ fn linear_functions_have_no_order() {
 
 #[test]
 fn a_vortex_is_of_second_order() {
-    for basis in ["gimp", "spline", "cpdi"] {
-        let orders = orders(&errors("B19", Tier::Quick, basis));
-        assert!(orders[0] >= 1.8, "{basis}: {orders:?}");
-    }
+    is_of_second_order_in_a_vortex("gimp");
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_vortex_is_of_second_order_by_boxes_of_a_cell_and_by_domains() {
+    ["spline", "cpdi"].into_iter().for_each(is_of_second_order_in_a_vortex);
+}
+
+fn is_of_second_order_in_a_vortex(basis: &str) {
+    let orders = orders(&errors("B19", Tier::Quick, basis));
+    assert!(orders[0] >= 1.8, "{basis}: {orders:?}");
 }
 
 #[test]

@@ -38,7 +38,7 @@ struct ImpulseSums {
     moment: [f64; 3],
     /// Where the grid repeats, the place of the block that was added last: the next one is that image which is nearest
     /// to it, so that a contact through a face is in one piece, and one that travels through it goes on [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     place: Option<[f64; 3]>,
     /// Of the impulse, about the origin [N m s].
     #[serde(default)]

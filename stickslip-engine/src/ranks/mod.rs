@@ -53,12 +53,12 @@ pub fn gathered<X: Serialize + DeserializeOwned>(ranks: &dyn Ranks, said: &X) ->
 
 /// Bytes of what ranks tell each other.
 pub fn bytes_of(said: &impl Serialize) -> Vec<u8> {
-    rmp_serde::to_vec(said).expect("memory takes what is written")
+    postcard::to_stdvec(said).expect("memory takes what is written")
 }
 
 /// What such bytes say.
 pub fn read<X: DeserializeOwned>(bytes: &[u8]) -> X {
-    rmp_serde::from_slice(bytes).expect("ranks run the same program")
+    postcard::from_bytes(bytes).expect("ranks run the same program")
 }
 
 /// What the bytes of each rank say.

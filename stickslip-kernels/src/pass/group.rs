@@ -201,13 +201,14 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
         let mut motion = Motion { deformation, jacobian, increment, stress, dt: V::splat(dt) };
         let thickness_is_free = D == 2 && visit.matter.thickness == Thickness::Free;
         if let Some(natural) = &natural {
-            motion = if thickness_is_free {
+            motion = if const { D == 2 } && thickness_is_free {
                 natural.seen_with_free_thickness(&motion)
             } else {
                 natural.seen(&motion)
             };
         }
-        if thickness_is_free {
+        // A constant block, so that thickening is not compiled for registers of space.
+        if const { D == 2 } && thickness_is_free {
             let Thickening { stretch, found } = constants.material.thickening(&motion, &history);
             sound.require(found, FaultKind::NoThickness);
             motion = motion.thickened(stretch);

@@ -7,8 +7,7 @@
 use super::group::{Constants, every, group, splat};
 use super::members::{AHEAD, Copies, Members, fetch};
 use super::{FaultKind, ParticleLoop, Visit};
-use crate::basis::{Basis, takes_most_time};
-
+use crate::basis::{Basis, takes_cells_together, takes_most_time};
 use crate::grid::{node_at, window_side};
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
 use crate::matter::Gyration;
@@ -47,9 +46,10 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
         let (visit, side) = (self.visit, window_side(B::WIDTH));
         // SAFETY: the caller of this work keeps others away from the tile's nodes.
         unsafe { visit.open::<M>(side) };
-        if D == 3 {
+        // Constant blocks, so that only what the dimension and the basis take is compiled.
+        if const { D == 3 } {
             visit.groups::<M, M::Wide, B>();
-        } else if visit.sparse() {
+        } else if const { takes_cells_together::<T, B>() } && visit.sparse() {
             visit.groups_across_cells::<M, M::Quad, B>();
         } else {
             // In the plane a cell holds four particles as a rule.

@@ -216,7 +216,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let [x, dx] = [shapes[0].weight[offset[0]] * factor, shapes[0].slope(offset[0]) * factor];
         let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
         let mut shares = Rows::<T>::EMPTY;
-        if D == 2 {
+        if const { D == 2 } {
             shares.fill([dx * y, x * dy, V::ZERO, x * y]);
         } else {
             let [z, dz] = [shapes[D - 1].weight[offset[D - 1]], shapes[D - 1].slope(offset[D - 1])];

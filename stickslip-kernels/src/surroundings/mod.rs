@@ -129,7 +129,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {
-        if D == 2 { self.sum::<M, M::Quad>() } else { self.sum::<M, M::Wide>() }
+        if const { D == 2 } { self.sum::<M, M::Quad>() } else { self.sum::<M, M::Wide>() }
     }
 }
 

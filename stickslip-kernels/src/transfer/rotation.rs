@@ -9,7 +9,7 @@ use crate::tensor::{Matrix, Number, Real, Vector};
 pub fn gradient<N: Number, const D: usize>(spin: &Vector<N, 3>, half_step: N) -> Matrix<N> {
     let [x, y, z] = spin.0;
     let mut gradient = Matrix::ZERO;
-    if D == 2 {
+    if const { D == 2 } {
         let inward = -(half_step * z * z);
         gradient.0[0] = [inward, -z, N::ZERO];
         gradient.0[1] = [z, inward, N::ZERO];

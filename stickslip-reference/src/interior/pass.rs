@@ -68,7 +68,7 @@ impl<T: Laned, const D: usize> Work for Visit<'_, T, D> {
 
     #[inline(always)]
     fn run<M: Machine<T>>(mut self) {
-        if D == 3 { self.cells::<M::Wide>() } else { self.cells::<M::Quad>() }
+        if const { D == 3 } { self.cells::<M::Wide>() } else { self.cells::<M::Quad>() }
     }
 
     /// One particle at a time on x86-64: laws for several that few processors need would be a tenth of the program.
@@ -171,7 +171,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         }
         let before = members.deformation::<V>();
         let mut deformation = own;
-        if D == 2 {
+        if const { D == 2 } {
             deformation.0[2][2] = before.0[2][2];
         }
         let mut jacobian = deformation.det();
@@ -190,7 +190,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         let stress = if constants.by_increments { members.stress::<V>() } else { Symmetric::ZERO };
         let mut history = HistoryOfGroup::new(members);
         let mut motion = Motion { deformation, jacobian, increment, stress, dt: constants.dt };
-        if D == 2 && self.matter.thickness == Thickness::Free {
+        if const { D == 2 } && self.matter.thickness == Thickness::Free {
             let Thickening { stretch, found } = constants.material.thickening(&motion, &history);
             require(found, FaultKind::NoThickness);
             motion = motion.thickened(stretch);

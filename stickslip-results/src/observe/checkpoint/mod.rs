@@ -414,7 +414,7 @@ fn layout(what: &str) -> ReadProblem {
 }
 
 /// What cannot be decoded although it is as it was written.
-fn damage(error: &rmp_serde::decode::Error) -> ReadProblem {
+fn damage(error: &impl std::fmt::Display) -> ReadProblem {
     layout(&format!("it is damaged: {error}"))
 }
 

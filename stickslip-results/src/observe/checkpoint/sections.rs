@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 /// Where a section lies, and what it is made of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -133,12 +133,12 @@ pub(super) fn packed(plain: Vec<u8>, form: CheckpointForm) -> (bool, Vec<u8>) {
 
 /// What such bytes say.
 pub(super) fn unpacked<X: DeserializeOwned>((is_packed, bytes): (bool, &[u8])) -> Result<X, ReadProblem> {
-    let decoded = match is_packed {
-        false => rmp_serde::from_slice(bytes),
-        true => {
-            let most = MOST_COMPRESSED * bytes.len() as u64;
-            rmp_serde::from_read(BufReader::new(ZlibDecoder::new(bytes).take(most)))
-        }
-    };
-    decoded.map_err(|error| damage(&error))
+    let mut plain = Vec::new();
+    if is_packed {
+        let most = MOST_COMPRESSED * bytes.len() as u64;
+        let unpacked = ZlibDecoder::new(bytes).take(most).read_to_end(&mut plain);
+        unpacked.map_err(|error| damage(&error))?;
+    }
+    // One reader for both: the compiler makes one copy of all that it reads.
+    rmp_serde::from_slice(if is_packed { &plain } else { bytes }).map_err(|error| damage(&error))
 }
