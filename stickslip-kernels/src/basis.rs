@@ -161,15 +161,9 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     }
 }
 
-/// Whether kernels of a basis are compiled for AVX-512, beside AVX2: those of large runs, linear functions and GIMP in
-/// space and double precision. Each kind of processor costs a build as much as all others.
-pub const fn takes_most_time<T: Real, const D: usize, B: Basis<T>>() -> bool {
-    D == 3 && size_of::<T>() == 8 && !B::CORNERS && B::WIDTH <= 3
-}
-
-/// Whether particles of several cells are taken together where cells of the plane have too few to fill the lanes: by
-/// linear functions and GIMP in double precision. It is half as much again to compile for the plane.
-pub const fn takes_cells_together<T: Real, B: Basis<T>>() -> bool {
+/// Whether a basis is one of those that most runs take, in double precision: linear functions and GIMP. Its kernels have
+/// what would cost a build too much for all: in space AVX-512, in the plane groups of particles of several cells.
+pub const fn takes_most_time<T: Real, B: Basis<T>>() -> bool {
     size_of::<T>() == 8 && !B::CORNERS && B::WIDTH <= 3
 }
 

@@ -7,7 +7,7 @@
 use super::group::{Constants, every, group, splat};
 use super::members::{AHEAD, Copies, Members, fetch};
 use super::{FaultKind, ParticleLoop, Visit};
-use crate::basis::{Basis, takes_cells_together, takes_most_time};
+use crate::basis::{Basis, takes_most_time};
 use crate::grid::{node_at, window_side};
 use crate::lanes::{Any, Laned, Lanes, MOST_LANES, Machine, Pack, Work};
 use crate::matter::Gyration;
@@ -39,7 +39,7 @@ pub unsafe fn visit<T: Laned, const D: usize, B: Basis<T>>(path: ParticleLoop, v
 impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D, B> {
     type Real = T;
     type Output = ();
-    const BY_AVX512: bool = takes_most_time::<T, D, B>();
+    const BY_AVX512: bool = D == 3 && takes_most_time::<T, B>();
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {
@@ -49,7 +49,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Work for SeveralAtATime<'_, '_, T, D
         // Constant blocks, so that only what the dimension and the basis take is compiled.
         if const { D == 3 } {
             visit.groups::<M, M::Wide, B>();
-        } else if const { takes_cells_together::<T, B>() } && visit.sparse() {
+        } else if const { takes_most_time::<T, B>() } && visit.sparse() {
             visit.groups_across_cells::<M, M::Quad, B>();
         } else {
             // In the plane a cell holds four particles as a rule.

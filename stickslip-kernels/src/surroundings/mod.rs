@@ -125,7 +125,7 @@ struct Around<'a, T, const D: usize, B> {
 impl<T: Laned, const D: usize, B: Basis<T>> Work for Around<'_, T, D, B> {
     type Real = T;
     type Output = ();
-    const BY_AVX512: bool = takes_most_time::<T, D, B>();
+    const BY_AVX512: bool = D == 3 && takes_most_time::<T, B>();
 
     #[inline(always)]
     fn run<M: Machine<T>>(self) {

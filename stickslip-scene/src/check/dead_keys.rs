@@ -67,8 +67,10 @@ fn nothing_on_the_grid(scene: &Scene) -> Option<Warning> {
     ];
     let dead: Vec<&str> = keys.iter().filter(|(_, dead)| *dead).map(|(key, _)| *key).collect();
     let (first, others) = dead.split_first()?;
-    let of = if none_deforms { "that deform" } else { "with interior = \"grid\"" };
-    let none = if none_deforms { "none" } else { "none that deform" };
+    let (of, none) = match none_deforms {
+        true => ("that deform", "none"),
+        false => ("with interior = \"grid\"", "none that deform"),
+    };
     let why = format!("does not act{}: it is that of bodies {of}, and the scene has {none}", nor(others));
     Some(Warning::about(*first, why))
 }

@@ -397,6 +397,7 @@ mod tests {
     use crate::check::bodies::measure;
     use crate::check::tests::{at_rest, free, incline, report, scene};
     use crate::geometry::Shape;
+    use crate::scene::StressUpdate;
 
     #[test]
     fn the_papers_incline_is_reported_with_its_waves_and_steps() {
@@ -509,9 +510,10 @@ mod tests {
             at_rest("sheet", Shape::Rotated { shape, center: [0.0; 3], axis: [1.0, 0.0, 0.0], angle: 0.5 })
         };
         let of = |thickness| {
-            let scene = scene(Dimension::Space, 0.1, vec![sheet(thickness)]);
-            let warnings = report(&scene).expect("no problem").warnings.into_iter();
-            warnings.filter(|warning| warning.text.contains("`sheet`")).collect::<Vec<_>>()
+            let mut scene = scene(Dimension::Space, 0.1, vec![sheet(thickness)]);
+            // Nothing deforms, and so no stress is updated.
+            scene.time.stress_update = StressUpdate::default();
+            report(&scene).expect("no problem").warnings
         };
         assert!(of(0.1).is_empty());
         assert!(of(0.08)[0].text.contains("`sheet` (0.08 m);"));

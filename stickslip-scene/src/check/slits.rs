@@ -1,9 +1,10 @@
 //! Parts of one body that face each other across a slit which its grid cannot see.
 
-use super::warning::Warning;
+use super::warning::{Warning, and_more};
 use crate::geometry::{Shape, SurfacePoint};
+use crate::packing::near;
 use crate::scene::{Interior, Scene};
-use std::collections::HashMap;
+use rayon::prelude::*;
 
 /// Slits narrower than this many cells of a grid of the body's own are bridged by its shape functions.
 const OWN: f64 = 3.0;
@@ -16,28 +17,30 @@ const PARALLEL: f64 = 0.3;
 /// Gaps narrower than this are round-off between parts that touch [cells].
 const TOUCHING: f64 = 1e-6;
 
+/// What is less of a length is round-off in the distance from a curved surface.
+const ROUND_OFF: f64 = 1e-3;
+
 /// Two points that face each other.
 struct Slit {
     gap: f64,
     place: [f64; 3],
 }
 
-/// A warning for the bodies that begin with a slit which their grid bridges.
+/// A warning of the narrowest slit that a grid bridges at the start.
 pub(super) fn warning(scene: &Scene) -> Option<Warning> {
-    let deforming = (0..scene.bodies.len()).filter(|&body| !scene.bodies[body].is_rigid());
-    let mut found = deforming.filter_map(|body| Some((body, narrowest(scene, body)?)));
-    let (body, Slit { gap, place }) = found.next()?;
-    let others = match found.count() {
-        0 => String::new(),
-        others => format!("; so it is with {others} more"),
-    };
-    let (cell, name) = (scene.discretization.cell, &scene.bodies[body].name);
-    let reach = reach(scene, body);
+    let found: Vec<_> = (0..scene.bodies.len())
+        .into_par_iter()
+        .filter(|&body| !scene.bodies[body].is_rigid())
+        .filter_map(|body| Some((body, narrowest(scene, body)?)))
+        .collect();
+    let (body, Slit { gap, place }) = found.iter().min_by(|a, b| a.1.gap.total_cmp(&b.1.gap))?;
+    let (cell, reach) = (scene.discretization.cell, reach(scene, *body));
     let place: Vec<String> = place[..scene.dimension.axes()].iter().map(|x| format!("{x:.3e}")).collect();
     let text = format!(
-        "not resolved by the grid: parts of `{name}` face each other {gap:.3e} m apart near ({}) m, {:.2} cells; \
-         nearer than {reach} cells they share shape functions, so that they push each other before they touch, and \
-         stick{others}. Make bodies of parts that will meet, or take space.cell below {:.1e} m",
+        "not resolved by the grid: parts of {} face each other {gap:.3e} m apart near ({}) m, {:.2} cells; nearer \
+         than {reach} cells they share shape functions, so that they push each other before they touch, and stick. \
+         Make bodies of parts that will meet, or take space.cell below {:.1e} m",
+        and_more(&format!("`{}`", scene.bodies[*body].name), found.len() - 1),
         place.join(", "),
         gap / cell,
         gap / reach
@@ -56,28 +59,19 @@ fn narrowest(scene: &Scene, body: usize) -> Option<Slit> {
     let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
     let bounds = shape.bounds(axes).filter(|_| !is_simple(shape))?;
     let reach = reach(scene, body) * cell;
-    let points = shape.surface(SPACING * cell, axes, &bounds);
-    let bin = |x: [f64; 3]| x.map(|x| (x / reach).floor() as i64);
-    let mut bins: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    for (number, point) in points.iter().enumerate() {
-        bins.entry(bin(point.position)).or_default().push(number as u32);
-    }
-    let mut narrowest: Option<Slit> = None;
-    for point in &points {
-        let home = bin(point.position);
-        for step in 0..27 {
-            let around = [home[0] + step / 9 - 1, home[1] + step / 3 % 3 - 1, home[2] + step % 3 - 1];
-            for other in bins.get(&around).into_iter().flatten() {
-                let Some(gap) = gap(point, &points[*other as usize], cell).filter(|gap| *gap < reach) else {
-                    continue;
-                };
-                if narrowest.as_ref().is_none_or(|known| gap < known.gap) {
-                    narrowest = Some(Slit { gap, place: point.position });
-                }
-            }
-        }
-    }
-    narrowest
+    // Most points have nothing in the ball before them, as wide as a slit may be.
+    let has_room = |point: &SurfacePoint| {
+        let middle = std::array::from_fn(|i| point.position[i] + 0.5 * reach * point.normal[i]);
+        shape.distance(middle, axes) > 0.5 * reach * (1.0 - ROUND_OFF)
+    };
+    let surface = shape.surface(SPACING * cell, axes, &bounds);
+    let points: Vec<SurfacePoint> = surface.into_par_iter().filter(|point| !has_room(point)).collect();
+    let positions: Vec<[f64; 3]> = points.iter().map(|point| point.position).collect();
+    let near = near(&positions, &vec![0.0; points.len()], reach + SPACING * cell, axes);
+    let pairs = (0..points.len()).flat_map(|i| near.of(i).map(move |j| (i, j)));
+    let gaps = pairs.filter_map(|(i, j)| Some((gap(&points[i], &points[j], cell)?, i)));
+    let (gap, i) = gaps.filter(|(gap, _)| *gap < reach).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Slit { gap, place: positions[i] })
 }
 
 /// Whether no part of a shape can face another.

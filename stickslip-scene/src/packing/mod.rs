@@ -26,6 +26,7 @@ mod neighbours;
 mod sizes;
 mod walls;
 
+pub(crate) use neighbours::near;
 pub use sizes::Sizes;
 
 use crate::geometry::{Bounds, Shape};

@@ -1,5 +1,6 @@
 //! Grains that are near each other, by cells of a grid: they are found anew hundreds of times, and are of like sizes.
-//! Bodies of a scene, of any sizes, are paired once, by a tree (`check/neighbours`).
+//! Points of a surface are balls without a radius. Bodies of a scene, of any sizes, are paired once, by a tree
+//! (`check/neighbours`).
 
 use rayon::prelude::*;
 use std::collections::HashMap;
