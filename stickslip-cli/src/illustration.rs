@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
 use stickslip::image::Image;
-use stickslip::observe::{Frame, ParticleFile, Performance, Results};
+use stickslip::observe::{CHART, Frame, PICTURE, ParticleFile, Performance, Results};
 use stickslip::scene::NamePattern;
 use stickslip::surface::model::Model;
 
@@ -378,13 +378,13 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         || if too_many { Ok(false) } else { draw_last(&results, folder) },
     );
     if charted? {
-        drawn.push("plot.png");
+        drawn.push(CHART);
     }
     if !results.frames().is_empty() {
         drawn.push("particles.pvd");
     }
     if pictured? {
-        drawn.push("picture.png");
+        drawn.push(PICTURE);
     }
     if folder.join("fringes.png").exists() {
         drawn.push("fringes.png");
@@ -392,7 +392,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
     let mut told = drawn.join(", ");
     if too_many && !results.frames().is_empty() {
         // One of an earlier end would pass for that of this one.
-        let _ = std::fs::remove_file(folder.join("picture.png"));
+        let _ = std::fs::remove_file(folder.join(PICTURE));
         told += &format!(
             "\n  no picture: it takes all particles and surfaces in one process; `stickslip render {}` draws it",
             folder.display()
@@ -408,7 +408,7 @@ const MOST_BODIES_DRAWN: usize = 1 << 12;
 /// Draws what the scene is about into `plot.png`; false if there is nothing to draw.
 fn draw_chart(results: &Results, folder: &Path) -> Result<bool, Failure> {
     let chart = chart(results, &ChartChoice::default()).map_err(Failure::input)?;
-    match crate::chart::draw(&chart, &folder.join("plot.png"), chart.size()) {
+    match crate::chart::draw(&chart, &folder.join(CHART), chart.size()) {
         Ok(()) => Ok(true),
         Err(DrawError::Empty(_)) => Ok(false),
         Err(error) => Err(error.into()),
@@ -423,6 +423,6 @@ fn draw_last(results: &Results, folder: &Path) -> Result<bool, Failure> {
         return Ok(false);
     }
     let picture = Album::open(results, PictureChoice::default())?.picture(last)?;
-    save(&picture, &folder.join("picture.png"))?;
+    save(&picture, &folder.join(PICTURE))?;
     Ok(true)
 }

@@ -5,9 +5,9 @@ use super::file::{OutputError, new_part, whole_name};
 use super::manifest::{Manifest, Status};
 use super::waiting::Waiting;
 use super::{
-    ARRIVALS, BODIES, CHECKPOINTS, CONTACTS, ENERGY, FABRIC, FRINGES, FRINGES_ANIMATION, FRINGES_TABLE,
-    FRONT_SPEEDS, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED,
-    SECTIONS, SURFACES,
+    ARRIVALS, BODIES, CHART, CHECKPOINTS, CONTACTS, ENERGY, FABRIC, FRINGES, FRINGES_ANIMATION,
+    FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PICTURE,
+    PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
 };
 use miette::Diagnostic;
 use std::collections::BTreeMap;
@@ -252,7 +252,7 @@ fn stranger(path: &Path) -> Result<Option<String>, FolderError> {
 
 /// Removes what earlier runs left half-written.
 fn clear_parts(path: &Path) -> Result<(), FolderError> {
-    let is_ours = |whole: &str| whole == TRIAL || FILES.contains(&whole);
+    let is_ours = |whole: &str| [TRIAL, PICTURE, CHART].contains(&whole) || FILES.contains(&whole);
     let folders = SNAPSHOTS.map(|name| path.join(name));
     let here = names(path)?.into_iter().map(|name| (path, name, &is_ours as &dyn Fn(&str) -> bool));
     let mut all: Vec<_> = here.collect();
@@ -527,6 +527,21 @@ mod tests {
         fs::write(folder.path().join("notes.json.0123abcd.part"), "mine").unwrap();
         assert!(matches!(OutputFolder::prepare(folder.path()), Err(FolderError::Foreign { .. })));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    /// A run that is killed while it is drawn goes on, and leaves what one does that was not.
+    #[test]
+    fn what_a_kill_leaves_of_a_file_goes_as_the_run_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let parts = ["energy.csv", PICTURE, CHART, "run.json", "particles/00003.vtu", "mine.png"];
+        fs::create_dir(folder.path().join("particles")).unwrap();
+        for whole in parts {
+            fs::write(folder.path().join(format!("{whole}.0123abcd.part")), "half").unwrap();
+        }
+        drop(OutputFolder::reopen(folder.path()).unwrap());
+        let left = names(folder.path()).unwrap();
+        assert!(left.iter().all(|name| name == "particles" || name == "mine.png.0123abcd.part"), "{left:?}");
+        assert_eq!(fs::read_dir(folder.path().join("particles")).unwrap().count(), 0);
     }
 
     #[test]

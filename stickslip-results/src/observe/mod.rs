@@ -119,6 +119,10 @@ const SURFACES: &str = "surfaces";
 const FRINGES: &str = "fringes";
 const FRINGES_TABLE: &str = "fringes.csv";
 const FRINGES_ANIMATION: &str = "fringes.png";
+/// The picture of the last snapshot, which is drawn once a run has ended.
+pub const PICTURE: &str = "picture.png";
+/// The chart, which is drawn then, too.
+pub const CHART: &str = "plot.png";
 
 /// What makes records doubtful.
 #[derive(Clone, Debug, PartialEq)]
