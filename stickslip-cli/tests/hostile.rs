@@ -163,13 +163,13 @@ fn names_in_files_of_particles_have_no_control_characters() {
         let rows: String = places.map(|[x, y]| format!("{x},{y},0.0025,\"{name}\"\n")).collect();
         workplace.write("grains.csv", &format!("{head}\n{rows}"));
     };
-    for name in ["a\u{1b}[31m", "a\nb", "a\u{7}", "\u{9b}31m", "a\u{fffe}"] {
+    for name in ["a\u{1b}[31m", "a\nb", "a\u{7}", "\u{9b}31m", "a\u{fffe}", "a\u{202e}gnp"] {
         write("x,y,volume,body", name);
         for command in ["check", "run"] {
             let ran = workplace.run(&[command, "scene.toml"]);
             refused(&ran, "without control characters");
             assert!(ran.stderr.contains("grains.csv, line 2, column 4"), "{}", ran.stderr);
-            let steers = |letter: char| letter.is_control() && letter != '\n';
+            let steers = |letter: char| letter.is_control() && letter != '\n' || letter == '\u{202e}';
             assert!(!(ran.stdout + &ran.stderr).contains(steers), "{name:?}");
         }
     }

@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::work::work;
 use crate::check::Warning;
 use crate::door::{RankShare, RelaxationState};
-use crate::scene::{Loaded, Scene, SceneError, load, parse};
+use crate::scene::{Loaded, Scene, SceneError, load, parse, steers_terminal};
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
@@ -125,7 +125,7 @@ impl SceneRecord {
 
 /// Whether a letter steers a terminal: it is replaced where a record is read.
 fn steers(letter: char) -> bool {
-    letter.is_control() && !matches!(letter, '\n' | '\r' | '\t')
+    steers_terminal(letter) && !matches!(letter, '\n' | '\r' | '\t')
 }
 
 /// Whether JSON may have such letters, as they are or written out.

@@ -5,6 +5,7 @@ use super::folder::OutputFolder;
 use super::memory::Memory;
 use super::waiting::Waiting;
 use super::writer::Writer;
+use crate::scene::steers_terminal;
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, Write};
@@ -74,7 +75,7 @@ impl CellValue<'_> {
         match self {
             CellValue::Number(number) => *number = text.parse().map_err(|_| "a number")?,
             CellValue::Count(count) => *count = text.parse().map_err(|_| "a whole number from 0")?,
-            CellValue::Name(_) if text.contains(char::is_control) => {
+            CellValue::Name(_) if text.contains(steers_terminal) => {
                 return Err("a name without control characters");
             }
             CellValue::Name(name) => text.clone_into(name),

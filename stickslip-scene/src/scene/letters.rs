@@ -1,8 +1,14 @@
 //! Letters of texts that come from files, which terminals and other files take.
 
+/// Whether a letter steers a terminal: it moves the cursor, begins a command or a line, or turns the direction of writing
+/// (embeddings, overrides and isolates of Unicode's bidirectional algorithm).
+pub fn steers_terminal(letter: char) -> bool {
+    letter.is_control() || matches!(letter, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 /// A text with escapes for letters that would steer a terminal.
 pub fn escaped(text: &str) -> String {
-    let letter = |letter: char| match letter.is_control() && letter != '\n' {
+    let letter = |letter: char| match steers_terminal(letter) && letter != '\n' {
         true => letter.escape_default().to_string(),
         false => letter.to_string(),
     };
@@ -28,7 +34,15 @@ pub fn shortened(message: &str) -> String {
 /// Whether a letter has no place in a name: what steers terminals, and the last two of Unicode's first plane, which are
 /// none and which XML does not take.
 pub(super) fn is_no_letter(letter: char) -> bool {
-    letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}')
+    steers_terminal(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}')
+}
+
+#[test]
+fn letters_that_steer_a_terminal_are_written_out() {
+    // What is shown as "exe.dat" is not what it is.
+    assert_eq!(escaped("a\u{202e}tad.exe\u{202c}"), "a\\u{202e}tad.exe\\u{202c}");
+    assert_eq!(escaped("red\u{1b}[31m\nline \u{e9}\u{5d0}"), "red\\u{1b}[31m\nline \u{e9}\u{5d0}");
+    assert!(is_no_letter('\u{2066}') && !is_no_letter('\u{628}'));
 }
 
 #[test]
