@@ -103,6 +103,31 @@ fn the_scenes_of_the_repository_are_told_of_nothing_but_resolution() {
     assert!(seen >= 10, "{seen}");
 }
 
+/// Lines that anybody reads before a run.
+const READ: usize = 10;
+
+#[test]
+fn no_scene_is_told_of_more_than_anybody_reads() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders =
+        ["../scenes", "../scenes/paper", "../scenes/shapes", "../scenes/experiment", "../scenes/gallery"];
+    let mut seen = 0;
+    for folder in folders.iter().chain(&["tests/sound"]) {
+        for file in std::fs::read_dir(here.join(folder)).expect("the folder of scenes") {
+            let path = file.expect("a file").path();
+            if path.extension().is_none_or(|end| end != "toml") {
+                continue;
+            }
+            let scene = scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+            let told =
+                report(&scene).unwrap_or_else(|problem| panic!("{}: {problem}", path.display())).warnings;
+            assert!(told.len() <= READ, "{}: {told:?}", path.display());
+            seen += 1;
+        }
+    }
+    assert!(seen >= 40, "{seen}");
+}
+
 /// A rule that names no friction, and pairs that no rule names; glued bodies rub on nothing.
 #[test]
 fn pairs_without_a_word_on_friction_are_named() {

@@ -4,7 +4,7 @@
 use super::{Check, CheckInputs, Finding, asks_for_damping, exceeds, norm, share};
 use crate::geometry::Bounds;
 use crate::observe::{Memory, OutputError};
-use crate::scene::{BasisKind, Damping, HealthCheck, Scene};
+use crate::scene::{BasisKind, Damping, HealthCheck, Interior, Scene};
 use crate::transfer::pic_share;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -45,20 +45,24 @@ impl Check for NoiseCheck {
             return "local damping is for bodies that come to rest: leave it out, or take [damping] viscous of a known \
                     rate";
         }
+        let on_grid = |body: usize| !scene.bodies[body].is_rigid() && scene.interior(body) == Interior::Grid;
+        if !(0..scene.bodies.len()).any(on_grid) {
+            return "what moves loses its motion to it: try smaller cells; see the column `damping` of energy.csv";
+        }
         match scene.discretization.basis {
             BasisKind::Gimp | BasisKind::Linear => {
-                "what bends, twists, spins or rolls loses its motion to it: try smaller cells, smaller deflections; \
-                 space.basis = \"cpdi\" keeps more of a swing in place, hardly more of rolling; see the column `damping` of \
-                 energy.csv"
+                "what bends, twists, spins or rolls loses its motion to it: try interior = \"reference\" for bodies \
+                 that stay whole, smaller cells; space.basis = \"cpdi\" keeps more of a swing in place, hardly more of \
+                 rolling; see the column `damping` of energy.csv"
             }
             BasisKind::Cpdi | BasisKind::Cubic => {
-                "what bends, twists, spins or rolls loses its motion to it: try smaller cells, smaller deflections; see \
-                 the column `damping` of energy.csv"
+                "what bends, twists, spins or rolls loses its motion to it: try interior = \"reference\" for bodies \
+                 that stay whole, smaller cells; see the column `damping` of energy.csv"
             }
             BasisKind::Spline => {
-                "what bends, twists, spins or rolls loses its motion to it: try smaller cells, smaller deflections, \
-                 space.basis = \"gimp\", by which what rolls or swings loses less than by splines; see the column \
-                 `damping` of energy.csv"
+                "what bends, twists, spins or rolls loses its motion to it: try interior = \"reference\" for bodies \
+                 that stay whole, smaller cells, space.basis = \"gimp\", by which what rolls or swings loses less than by \
+                 splines; see the column `damping` of energy.csv"
             }
         }
     }

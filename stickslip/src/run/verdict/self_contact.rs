@@ -29,7 +29,8 @@ impl Check for SelfContactCheck {
     }
 
     fn advice(&self, _: &Scene) -> &'static str {
-        "they are pushed up to a cell early, and stick: make bodies of the parts that meet, or take smaller cells"
+        "they are pushed up to a cell early, and stick: take interior = \"reference\" for bodies that stay whole, make \
+         bodies of the parts that meet, or take smaller cells"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {

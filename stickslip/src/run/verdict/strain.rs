@@ -3,7 +3,7 @@
 use super::neighbours::Neighbours;
 use super::{Check, CheckInputs, Finding, exceeds, minus, norm, place};
 use crate::observe::{Memory, OutputError};
-use crate::scene::{BasisKind, HealthCheck, Scene};
+use crate::scene::{HealthCheck, Scene};
 use std::collections::BTreeMap;
 
 /// Holds the distances of neighbours against those that their deformation gradients give.
@@ -56,17 +56,9 @@ impl Check for StrainCheck {
         HealthCheck::Strain
     }
 
-    fn advice(&self, scene: &Scene) -> &'static str {
-        match scene.discretization.basis {
-            BasisKind::Cpdi => {
-                "particles move without straining, or strain without moving: try another time.stress_update, smaller \
-                 cells, more particles_per_side"
-            }
-            _ => {
-                "particles move without straining, or strain without moving: try space.basis = \"cpdi\", another \
-                 time.stress_update, smaller cells"
-            }
-        }
+    fn advice(&self, _: &Scene) -> &'static str {
+        "particles move without straining, or strain without moving: try interior = \"reference\" for bodies that stay \
+         whole, another time.stress_update, smaller cells"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {

@@ -23,9 +23,13 @@ impl Check for TearingCheck {
     fn advice(&self, scene: &Scene) -> &'static str {
         match scene.discretization.basis {
             BasisKind::Cpdi => {
-                "no law tears it, the grid lost it: try more particles_per_side, a smaller load"
+                "no law tears it, the grid lost it: try interior = \"reference\" for bodies that stay whole, more \
+                 particles_per_side, a smaller load"
             }
-            _ => "no law tears it, the grid lost it: try space.basis = \"cpdi\", a smaller load",
+            _ => {
+                "no law tears it, the grid lost it: try interior = \"reference\" for bodies that stay whole, \
+                 space.basis = \"cpdi\" for a pull along one axis, a smaller load"
+            }
         }
     }
 
