@@ -18,7 +18,7 @@ pub enum Failure {
     Doubtful(usize),
     /// A run that was made again did not end in the same bits.
     Differs,
-    /// Scenes of the gallery failed, each with a message of its own, or their checks do not hold, or their checks do not hold.
+    /// Scenes of the gallery failed, each with a message of its own, or their checks do not hold.
     Gallery {
         /// Those that failed, and the exit code of the first one.
         failed: (Vec<&'static str>, u8),

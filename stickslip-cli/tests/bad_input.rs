@@ -3,13 +3,48 @@
 mod stickslip;
 
 use std::fs;
-use stickslip::{Workplace, new_scene};
+use stickslip::{Workplace, new_scene, outcome};
 
 #[test]
 fn an_unknown_flag_is_refused() {
     let ran = Workplace::new().run(&["run", "scene.toml", "--thread", "2"]);
     assert_eq!(ran.code, Some(2));
     assert!(ran.stderr.contains("--threads"), "{}", ran.stderr);
+}
+
+/// The variable that limits the instructions, and the bits that they give.
+#[test]
+fn instructions_are_limited_by_name_and_give_the_same_bits() {
+    let workplace = Workplace::new();
+    workplace.write("scene.toml", &new_scene());
+    let limited = |limit: &str, out: &str| {
+        let coarse = ["--set", "cells_per_radius=3", "--set", "time.end=0.02"];
+        let run = [&["run", "scene.toml", "--out", out, "--threads", "1"][..], &coarse].concat();
+        workplace.command(&run).env("STICKSLIP_INSTRUCTIONS", limit).output().unwrap()
+    };
+    let refused = limited("sse", "refused");
+    let told = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(2), "{told}");
+    assert!(
+        told.contains("STICKSLIP_INSTRUCTIONS") && told.contains("found sse, allowed: avx2, base"),
+        "{told}"
+    );
+    assert!(!workplace.path("refused").exists());
+    assert!(limited("base", "base").status.success());
+    assert!(limited("avx2", "limited").status.success());
+    workplace.succeed(&[
+        "run",
+        "scene.toml",
+        "--out",
+        "best",
+        "--threads",
+        "1",
+        "--set",
+        "cells_per_radius=3",
+        "--set",
+        "time.end=0.02",
+    ]);
+    assert!(outcome(&workplace.path("limited")) == outcome(&workplace.path("best")));
 }
 
 #[test]

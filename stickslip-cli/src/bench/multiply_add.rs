@@ -53,6 +53,7 @@ macro_rules! chains {
 mod vectors {
     use super::{CHAINS, Loop, NEAR, black_box};
     use std::arch::x86_64::*;
+    use stickslip::lanes::Processor;
 
     chains!(wide_double, "avx512f", f64, _mm512_set1_pd, _mm512_fmadd_pd);
     chains!(wide_single, "avx512f", f32, _mm512_set1_ps, _mm512_fmadd_ps);
@@ -61,11 +62,11 @@ mod vectors {
 
     /// Names of the instructions, and the loops in `f64` and `f32`.
     pub fn best() -> Option<(&'static str, [Loop; 2])> {
-        if is_x86_feature_detected!("avx512f") {
-            return Some(("AVX-512", [(wide_double, 8), (wide_single, 16)]));
+        match Processor::best() {
+            Processor::Avx512 => Some(("AVX-512", [(wide_double, 8), (wide_single, 16)])),
+            Processor::Avx2 => Some(("AVX2", [(double, 4), (single, 8)])),
+            Processor::Any => None,
         }
-        let fused = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
-        fused.then_some(("AVX2", [(double, 4), (single, 8)]))
     }
 }
 
