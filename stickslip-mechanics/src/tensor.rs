@@ -197,11 +197,16 @@ impl<T: Number> Matrix<T> {
     pub fn inverse(&self) -> Self {
         let m = &self.0;
         let per_det = T::ONE / self.det();
-        Matrix::from_fn(|i, j| {
-            let (a, b) = ((j + 1) % 3, (j + 2) % 3);
-            let (c, d) = ((i + 1) % 3, (i + 2) % 3);
-            m[a][c].times_plus(m[b][d], -(m[a][d] * m[b][c])) * per_det
-        })
+        let mut inverse = Self::ZERO;
+        // No closure: the compiler may leave it uninlined, and then instructions on registers are calls.
+        for i in 0..3 {
+            for j in 0..3 {
+                let (a, b) = ((j + 1) % 3, (j + 2) % 3);
+                let (c, d) = ((i + 1) % 3, (i + 2) % 3);
+                inverse.0[i][j] = m[a][c].times_plus(m[b][d], -(m[a][d] * m[b][c])) * per_det;
+            }
+        }
+        inverse
     }
 
     /// Transpose.

@@ -15,6 +15,7 @@ pub use pack::Pack;
 pub use pair::RegisterPair;
 
 use crate::number::{Number, Real};
+use std::sync::OnceLock;
 
 /// Most lanes of any machine.
 pub const MOST_LANES: usize = 8;
@@ -23,8 +24,18 @@ pub const MOST_LANES: usize = 8;
 pub trait Lanes: Number {
     /// The numbers.
     type Real: Real;
+    /// What one register holds of them.
+    type Register: Lanes<Real = Self::Real>;
     /// How many.
     const COUNT: usize;
+    /// How many registers hold them: sums of many terms go through one after the other, lest they spill.
+    const REGISTERS: usize;
+
+    /// The lanes of the `n`-th register.
+    fn register(self, n: usize) -> Self::Register;
+
+    /// Gives the lanes of the `n`-th register.
+    fn put(&mut self, n: usize, register: Self::Register);
 
     /// The same number in every lane.
     fn splat(x: Self::Real) -> Self;
@@ -145,6 +156,16 @@ pub trait Lanes: Number {
     fn first(self, count: usize) -> Self {
         let numbers = self.numbers();
         Self::from_fn(|lane| if lane < count { numbers.0[lane] } else { Self::Real::ZERO })
+    }
+
+    /// The sums over the lanes of four registers: of eight lanes those with the ones four after them first, then
+    /// neighbours.
+    #[inline(always)]
+    fn sums(columns: [Self; 4]) -> [Self::Real; 4] {
+        columns.map(|column| {
+            let Numbers([a, b, c, d, e, f, g, h]) = column.numbers();
+            if Self::COUNT > 4 { ((a + e) + (b + f)) + ((c + g) + (d + h)) } else { (a + b) + (c + d) }
+        })
     }
 
     /// Writes the lanes of four registers as rows: in row `i` the lanes `i` of all four.
@@ -293,8 +314,29 @@ pub enum Processor {
 }
 
 impl Processor {
-    /// The best that this processor has.
+    /// The variable that limits the instructions: to `avx2`, or to `base`, those that the build assumes.
+    pub const LIMIT: &str = "STICKSLIP_INSTRUCTIONS";
+
+    /// The best that this processor has, or that [`Processor::LIMIT`] allows.
     pub fn best() -> Self {
+        static BEST: OnceLock<Processor> = OnceLock::new();
+        *BEST.get_or_init(|| Self::here().min(Self::limit().unwrap_or(Processor::Avx512)))
+    }
+
+    /// What [`Processor::LIMIT`] allows at most.
+    ///
+    /// # Errors
+    /// It says something else, which is this.
+    pub fn limit() -> Result<Self, String> {
+        match std::env::var_os(Self::LIMIT) {
+            None => Ok(Processor::Avx512),
+            Some(limit) if limit == "avx2" => Ok(Processor::Avx2),
+            Some(limit) if limit == "base" => Ok(Processor::Any),
+            Some(other) => Err(other.to_string_lossy().into_owned()),
+        }
+    }
+
+    fn here() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             if x86::has_avx512() {

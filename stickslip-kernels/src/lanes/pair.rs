@@ -106,7 +106,19 @@ impl<V: Lanes> Number for RegisterPair<V> {
 
 impl<V: Lanes> Lanes for RegisterPair<V> {
     type Real = V::Real;
+    type Register = V;
     const COUNT: usize = 2 * V::COUNT;
+    const REGISTERS: usize = 2;
+
+    #[inline(always)]
+    fn register(self, n: usize) -> V {
+        if n == 0 { self.0 } else { self.1 }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, n: usize, register: V) {
+        *(if n == 0 { &mut self.0 } else { &mut self.1 }) = register;
+    }
 
     #[inline(always)]
     fn splat(x: V::Real) -> Self {
@@ -189,6 +201,13 @@ impl<V: Lanes> Lanes for RegisterPair<V> {
     #[inline(always)]
     fn add_neighbours(self, other: Self) -> Self {
         RegisterPair(self.0.add_neighbours(other.0), self.1.add_neighbours(other.1))
+    }
+
+    #[inline(always)]
+    fn sums(columns: [Self; 4]) -> [V::Real; 4] {
+        const { assert!(V::COUNT == 4) };
+        let [a, b, c, d] = columns;
+        V::sums([a.0 + a.1, b.0 + b.1, c.0 + c.1, d.0 + d.1])
     }
 
     #[inline(always)]

@@ -106,6 +106,8 @@ impl<T: Laned> Work for PartialRow<T> {
     fn run<M: Machine<T>>(self) {
         parts_of::<M::Wide>();
         parts_of::<M::Quad>();
+        sums_of::<M::Wide>();
+        sums_of::<M::Quad>();
         fourths_of::<M::Wide>();
         fourths_of::<M::Quad>();
         selections_of::<M::Wide>();
@@ -115,6 +117,18 @@ impl<T: Laned> Work for PartialRow<T> {
         let order = [6, 0, 2, 4, 1, 3, 5, 7];
         assert_eq!(wide.permuted(order).numbers().0, order.map(|lane| T::of(lane as f64)));
     }
+}
+
+/// In one order on all machines.
+#[inline(always)]
+fn sums_of<V: Lanes>() {
+    let of = |lane: usize| V::Real::of(1.0 / (lane as f64 + 3.0));
+    let lanes = V::from_fn(of);
+    let four = |first: usize| [0, 1, 2, 3].map(|lane| of(first + lane));
+    let each = if V::COUNT == 8 { [0, 1, 2, 3].map(|lane| four(0)[lane] + four(4)[lane]) } else { four(0) };
+    let sum = |[a, b, c, d]: [V::Real; 4]| (a + b) + (c + d);
+    let expected = [sum(each), V::Real::ZERO, sum(each), -sum(each)];
+    assert_eq!(V::sums([lanes, V::ZERO, lanes, -lanes]), expected);
 }
 
 #[inline(always)]

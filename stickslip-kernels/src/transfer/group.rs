@@ -12,6 +12,7 @@ use crate::basis::{Basis, BoxSide, Entries, Line, Neighbours, Plane, ShapeFuncti
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, SIDE, WINDOW_NODES, Window, window_side};
 use crate::lanes::{Lanes, MOST_LANES, Machine};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector};
+use std::hint::black_box;
 use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 
@@ -438,7 +439,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         }
     }
 
-    /// For particles that share their nodes: sums over particles first.
+    /// For particles that share their nodes: sums over particles first, register by register of a node's numbers, so
+    /// that the sums over a plane of nodes stay in registers.
     #[inline(always)]
     fn scatter_together<M: Machine<V::Real>>(
         &self,
@@ -446,19 +448,67 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         start: usize,
         PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
     ) {
-        let mut below = Plane::<B, V::Real, _>::all(M::Wide::ZERO);
+        let mut below = [Plane::<B, V::Real, _>::all(Register::<M, V::Real>::ZERO); MOST_REGISTERS];
         for i in 0..B::WIDTH {
-            let [mut momenta, mut forces] = [Plane::<B, V::Real, _>::all(M::Wide::ZERO); 2];
-            if let Some(momentum) = momentum {
-                momenta = self.momenta::<M>(i, momentum);
+            let mut weights = Plane::<B, V::Real, _>::all(Factors::EMPTY);
+            let mut slopes = PlaneSlopes::<V, B>::empty();
+            if momentum.is_some() {
+                self.put_weights(i, &mut weights);
             }
-            if let Some(stress) = stress {
-                (forces, below) = self.forces::<M>(i, stress, &below);
+            if stress.is_some() {
+                self.put_slopes(i, &mut slopes);
             }
-            for j in 0..B::WIDTH {
-                for k in 0..Self::DEPTH {
-                    let n = j * Self::DEPTH + k;
-                    add::<M, _>(&mut window.sums[start + Self::offset(i, j, k)], momenta[n], forces[n]);
+            // Where two registers hold a row, the factors of all particles would spill: so they are loaded where needed.
+            let (weights, slopes) = match <M::Wide as Lanes>::REGISTERS {
+                1 => (&weights, &slopes),
+                _ => (black_box(&weights), black_box(&slopes)),
+            };
+            for part in 0..<M::Wide as Lanes>::REGISTERS {
+                let [mut momenta, mut forces] =
+                    [Plane::<B, V::Real, _>::all(Register::<M, V::Real>::ZERO); 2];
+                if let Some(momentum) = momentum {
+                    momenta = self.momenta::<M>((i, part), momentum, weights);
+                }
+                if let Some(stress) = stress {
+                    (forces, below[part]) = self.forces::<M>((i, part), stress, (slopes, &below[part]));
+                }
+                for j in 0..B::WIDTH {
+                    for k in 0..Self::DEPTH {
+                        let n = j * Self::DEPTH + k;
+                        let node = &mut window.sums[start + Self::offset(i, j, k)];
+                        add::<M, _>((node, part), momenta[n], forces[n]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// S_i at the nodes of a plane across the first axis.
+    #[inline(always)]
+    fn put_weights(&self, i: usize, weights: &mut Plane<B, V::Real, Factors<V::Real>>) {
+        for j in 0..B::WIDTH {
+            for k in 0..Self::DEPTH {
+                weights[j * Self::DEPTH + k].put(self.shapes[0].weight[i] * self.across(j, k));
+            }
+        }
+    }
+
+    /// Differences of S_i from a plane to the next, and within it.
+    #[inline(always)]
+    fn put_slopes(&self, i: usize, slopes: &mut PlaneSlopes<V, B>) {
+        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
+        for j in 0..B::WIDTH {
+            for k in 0..Self::DEPTH {
+                if i + 1 < B::WIDTH {
+                    slopes.along_x[j * Self::DEPTH + k].put(self.across(j, k) * x.difference[i]);
+                }
+                if j + 1 < B::WIDTH {
+                    let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
+                    slopes.along_y[j * Self::DEPTH + k].put(weight * y.difference[j]);
+                }
+                if k + 1 < Self::DEPTH {
+                    slopes.along_z[j * (Self::DEPTH - 1) + k]
+                        .put(x.weight[i] * y.weight[j] * z.difference[k]);
                 }
             }
         }
@@ -468,21 +518,17 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     fn momenta<M: Machine<V::Real>>(
         &self,
-        i: usize,
+        (i, part): (usize, usize),
         load: &[RowsOfLanes<V::Real>; 4],
-    ) -> Plane<B, V::Real, M::Wide> {
-        let mut weights = Plane::<B, V::Real, _>::all(Factors::EMPTY);
-        for j in 0..B::WIDTH {
-            for k in 0..Self::DEPTH {
-                weights[j * Self::DEPTH + k].put(self.shapes[0].weight[i] * self.across(j, k));
-            }
-        }
-        let mut sums = Plane::<B, V::Real, _>::all(M::Wide::NOTHING);
+        weights: &Plane<B, V::Real, Factors<V::Real>>,
+    ) -> PlaneSums<B, M, V::Real> {
+        let mut sums = Plane::<B, V::Real, _>::all(Register::<M, V::Real>::NOTHING);
         for pair in 0..self.pairs() {
-            let (along_x, along_y) = (load[1].get::<M>(pair), load[2].get::<M>(pair));
-            let along_z = load[D].get::<M>(pair);
+            let (along_x, along_y) = (load[1].get::<M>(pair, part), load[2].get::<M>(pair, part));
+            let along_z = load[D].get::<M>(pair, part);
             // From node to node.
-            let mut line = along_x.times_plus(M::Wide::of(i as f64), load[0].get::<M>(pair));
+            let mut line =
+                along_x.times_plus(Register::<M, V::Real>::of(i as f64), load[0].get::<M>(pair, part));
             for j in 0..B::WIDTH {
                 let mut row = line;
                 for k in 0..Self::DEPTH {
@@ -505,48 +551,30 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     fn forces<M: Machine<V::Real>>(
         &self,
-        i: usize,
+        (i, part): (usize, usize),
         load: &[RowsOfLanes<V::Real>; 3],
-        below: &Plane<B, V::Real, M::Wide>,
-    ) -> TwoPlanes<B, V::Real, M::Wide> {
-        let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
-        // To the next plane of nodes, and within this one.
-        let mut along_x = Plane::<B, V::Real, _>::all(Factors::EMPTY);
-        let [mut along_y, mut along_z] = [Neighbours::<B, V::Real, _>::all(Factors::EMPTY); 2];
-        for j in 0..B::WIDTH {
-            for k in 0..Self::DEPTH {
-                if i + 1 < B::WIDTH {
-                    along_x[j * Self::DEPTH + k].put(self.across(j, k) * x.difference[i]);
-                }
-                if j + 1 < B::WIDTH {
-                    let weight = if D == 2 { x.weight[i] } else { x.weight[i] * z.weight[k] };
-                    along_y[j * Self::DEPTH + k].put(weight * y.difference[j]);
-                }
-                if k + 1 < Self::DEPTH {
-                    along_z[j * (Self::DEPTH - 1) + k].put(x.weight[i] * y.weight[j] * z.difference[k]);
-                }
-            }
-        }
-        let mut above = Plane::<B, V::Real, _>::all(M::Wide::NOTHING);
+        (slopes, below): (&PlaneSlopes<V, B>, &PlaneSums<B, M, V::Real>),
+    ) -> TwoPlanes<B, V::Real, Register<M, V::Real>> {
+        let mut above = Plane::<B, V::Real, _>::all(Register::<M, V::Real>::NOTHING);
         if i + 1 < B::WIDTH {
             for pair in 0..self.pairs() {
-                let row = load[0].get::<M>(pair);
+                let row = load[0].get::<M>(pair, part);
                 for n in 0..B::WIDTH * Self::DEPTH {
-                    above[n] = row.times_plus(along_x[n].get::<M>(pair), above[n]);
+                    above[n] = row.times_plus(slopes.along_x[n].get::<M>(pair), above[n]);
                 }
             }
         }
-        let [mut right, mut back] = [Neighbours::<B, V::Real, _>::all(M::Wide::NOTHING); 2];
+        let [mut right, mut back] = [Neighbours::<B, V::Real, _>::all(Register::<M, V::Real>::NOTHING); 2];
         for pair in 0..self.pairs() {
-            let (row_y, row_z) = (load[1].get::<M>(pair), load[D - 1].get::<M>(pair));
+            let (row_y, row_z) = (load[1].get::<M>(pair, part), load[D - 1].get::<M>(pair, part));
             for n in 0..(B::WIDTH - 1) * Self::DEPTH {
-                right[n] = row_y.times_plus(along_y[n].get::<M>(pair), right[n]);
+                right[n] = row_y.times_plus(slopes.along_y[n].get::<M>(pair), right[n]);
             }
             for n in 0..B::WIDTH * (Self::DEPTH - 1) {
-                back[n] = row_z.times_plus(along_z[n].get::<M>(pair), back[n]);
+                back[n] = row_z.times_plus(slopes.along_z[n].get::<M>(pair), back[n]);
             }
         }
-        let mut forces = Plane::<B, V::Real, _>::all(M::Wide::ZERO);
+        let mut forces = Plane::<B, V::Real, _>::all(Register::<M, V::Real>::ZERO);
         for j in 0..B::WIDTH {
             for k in 0..Self::DEPTH {
                 let n = j * Self::DEPTH + k;
@@ -578,28 +606,36 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
     ) {
         for (n, at) in Self::nodes() {
-            let [mut given, mut force] = [M::Wide::NOTHING; 2];
-            if let Some([first, steps @ ..]) = momentum {
-                let weights = Factors::of(self.weight(n, at));
-                for pair in 0..self.pairs() {
-                    let mut row = first.get::<M>(pair);
-                    for axis in 0..D {
-                        row = steps[axis].get::<M>(pair).times_plus(M::Wide::of(at[axis] as f64), row);
-                    }
-                    given = row.times_plus(weights.get::<M>(pair), given);
-                }
-            }
-            if let Some(stress) = stress {
+            let weights = Factors::of(self.weight(n, at));
+            let mut slopes = [Factors::EMPTY; D];
+            if stress.is_some() {
                 for axis in 0..D {
-                    let slopes = Factors::of(-self.table.slope(n, axis));
-                    for pair in 0..self.pairs() {
-                        let row = stress[axis].get::<M>(pair);
-                        force = row.times_plus(slopes.get::<M>(pair), force);
-                    }
+                    slopes[axis].put(-self.table.slope(n, axis));
                 }
             }
-            let [i, j, k] = at;
-            add::<M, _>(&mut window.sums[start + Self::offset(i, j, k)], given, force);
+            for part in 0..<M::Wide as Lanes>::REGISTERS {
+                let [mut given, mut force] = [Register::<M, V::Real>::NOTHING; 2];
+                if let Some([first, steps @ ..]) = momentum {
+                    for pair in 0..self.pairs() {
+                        let mut row = first.get::<M>(pair, part);
+                        for axis in 0..D {
+                            let step = steps[axis].get::<M>(pair, part);
+                            row = step.times_plus(Register::<M, V::Real>::of(at[axis] as f64), row);
+                        }
+                        given = row.times_plus(weights.get::<M>(pair), given);
+                    }
+                }
+                if let Some(stress) = stress {
+                    for axis in 0..D {
+                        for pair in 0..self.pairs() {
+                            let row = stress[axis].get::<M>(pair, part);
+                            force = row.times_plus(slopes[axis].get::<M>(pair), force);
+                        }
+                    }
+                }
+                let [i, j, k] = at;
+                add::<M, _>((&mut window.sums[start + Self::offset(i, j, k)], part), given, force);
+            }
         }
     }
 
@@ -630,25 +666,28 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
         }
-        for p in 0..self.count.min(MOST_LANES) {
-            let (mut rows, mut momenta) = ([M::Wide::ZERO; 3], [M::Wide::ZERO; 4]);
+        for (p, part) in (0..self.count.min(MOST_LANES))
+            .flat_map(|p| (0..<M::Wide as Lanes>::REGISTERS).map(move |part| (p, part)))
+        {
+            let (mut rows, mut momenta) =
+                ([Register::<M, V::Real>::ZERO; 3], [Register::<M, V::Real>::ZERO; 4]);
             if let Some([first, steps @ ..]) = momentum {
-                momenta[0] = first.one::<M>(p);
+                momenta[0] = first.one::<M>(p, part);
                 for axis in 0..D {
-                    momenta[axis + 1] = steps[axis].one::<M>(p);
+                    momenta[axis + 1] = steps[axis].one::<M>(p, part);
                 }
             }
             if let Some(stress) = stress {
                 for axis in 0..D {
-                    rows[axis] = stress[axis].one::<M>(p);
+                    rows[axis] = stress[axis].one::<M>(p, part);
                 }
             }
             for (n, [i, j, k]) in Self::nodes() {
-                let (mut given, mut force) = (M::Wide::ZERO, M::Wide::NOTHING);
+                let (mut given, mut force) = (Register::<M, V::Real>::ZERO, Register::<M, V::Real>::NOTHING);
                 if momentum.is_some() {
                     let mut row = momenta[0];
                     for (axis, steps) in [i, j, k].into_iter().enumerate().take(D) {
-                        row = momenta[axis + 1].times_plus(M::Wide::of(steps as f64), row);
+                        row = momenta[axis + 1].times_plus(Register::<M, V::Real>::of(steps as f64), row);
                     }
                     given = row * weights[n].get::<M>(p / 2);
                 }
@@ -657,7 +696,8 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                         force = (-rows[axis]).times_plus(slopes[n][axis].get::<M>(p / 2), force);
                     }
                 }
-                add::<M, _>(&mut window.sums[self.start.of(p) + Self::offset(i, j, k)], given, force);
+                let node = &mut window.sums[self.start.of(p) + Self::offset(i, j, k)];
+                add::<M, _>((node, part), given, force);
             }
         }
     }
@@ -694,6 +734,26 @@ pub fn pairs(count: usize) -> usize {
     count.min(MOST_LANES).div_ceil(2)
 }
 
+/// Differences of the weights of a group's particles from a plane of nodes to the next, and between neighbours in it.
+struct PlaneSlopes<V: Lanes, B: Basis<V::Real>> {
+    along_x: Plane<B, V::Real, Factors<V::Real>>,
+    along_y: Neighbours<B, V::Real, Factors<V::Real>>,
+    along_z: Neighbours<B, V::Real, Factors<V::Real>>,
+}
+
+impl<V: Lanes, B: Basis<V::Real>> PlaneSlopes<V, B> {
+    /// To be put.
+    #[inline(always)]
+    fn empty() -> Self {
+        let between = Neighbours::<B, V::Real, _>::all(Factors::EMPTY);
+        PlaneSlopes {
+            along_x: Plane::<B, V::Real, _>::all(Factors::EMPTY),
+            along_y: between,
+            along_z: between,
+        }
+    }
+}
+
 /// What a group scatters, by pairs of particles.
 struct PairLoad<'a, T> {
     /// Momentum and mass at the base node, and by how much they change to the next node along each axis.
@@ -724,18 +784,21 @@ impl<T: Real> RowsOfLanes<T> {
         unsafe { V::store_pairs(columns, self.0.as_mut_ptr().cast()) };
     }
 
+    /// What a register holds of the rows of a pair, its `part`-th.
     #[inline(always)]
-    fn get<M: Machine<T>>(&self, pair: usize) -> M::Wide {
+    fn get<M: Machine<T>>(&self, pair: usize, part: usize) -> Register<M, T> {
         debug_assert!(pair < MOST_LANES / 2, "a pair of the group");
         // SAFETY: a row is eight numbers, and those of all pairs of a group were put.
-        unsafe { M::Wide::load(self.0.as_ptr().cast::<T>().add(8 * pair)) }
+        unsafe {
+            Register::<M, T>::load(self.0.as_ptr().cast::<T>().add(8 * pair + part * Register::<M, T>::COUNT))
+        }
     }
 
-    /// The row of a particle, with zeros in the place of its partner.
+    /// The same of one particle, with zeros in the place of its partner.
     #[inline(always)]
-    fn one<M: Machine<T>>(&self, particle: usize) -> M::Wide {
+    fn one<M: Machine<T>>(&self, particle: usize, part: usize) -> Register<M, T> {
         let only = if particle.is_multiple_of(2) { [T::ONE, T::ZERO] } else { [T::ZERO, T::ONE] };
-        self.get::<M>(particle / 2) * M::Wide::alternate(only)
+        self.get::<M>(particle / 2, part) * Register::<M, T>::alternate(only)
     }
 }
 
@@ -768,18 +831,33 @@ impl<T: Real> Factors<T> {
 
     /// Those of two particles.
     #[inline(always)]
-    fn get<M: Machine<T>>(&self, pair: usize) -> M::Wide {
+    fn get<M: Machine<T>>(&self, pair: usize) -> Register<M, T> {
         debug_assert!(pair < MOST_LANES / 2, "a pair of the group");
         // SAFETY: those of all pairs of a group were put.
         let [a, b] = unsafe { self.0.as_ptr().cast::<[T; 2]>().add(pair).read() };
-        M::Wide::alternate([a, b])
+        Register::<M, T>::alternate([a, b])
     }
 }
 
-/// Adds momentum and force, each of two particles, to a node.
+/// Registers that hold the numbers of two particles at most.
+const MOST_REGISTERS: usize = 2;
+
+/// What one of them holds.
+type Register<M, T> = <<M as Machine<T>>::Wide as Lanes>::Register;
+
+/// What such a register holds at each node of a plane.
+type PlaneSums<B, M, T> = Plane<B, T, Register<M, T>>;
+
+/// Adds momentum and force, each of two particles, to a node: what a register holds of it, its `part`-th.
 #[inline(always)]
-fn add<M: Machine<T>, T: Real>(node: &mut NodeSums<T>, momentum: M::Wide, force: M::Wide) {
-    let node = node.as_mut_ptr().cast();
+fn add<M: Machine<T>, T: Real>(
+    (node, part): (&mut NodeSums<T>, usize),
+    momentum: Register<M, T>,
+    force: Register<M, T>,
+) {
     // SAFETY: a node has eight numbers, borrowed for writing.
-    unsafe { (M::Wide::load(node) + momentum.add_neighbours(force)).store(node) }
+    unsafe {
+        let node = node.as_mut_ptr().cast::<T>().add(part * Register::<M, T>::COUNT);
+        (Register::<M, T>::load(node) + momentum.add_neighbours(force)).store(node);
+    }
 }

@@ -1,10 +1,15 @@
 //! The one pass of a step over the particles: F from places, stress, forces on the nodes.
 //!
-//! All particles of a cell at a time, one in each lane: they see the same nodes.
+//! All particles of a cell at a time, one in each lane: they see the same nodes. Sums of many terms go register by
+//! register.
+
+// Sums over nodes and components read better by their indices.
+#![allow(clippy::needless_range_loop)]
 
 use super::Interior;
 use crate::cells::Table;
-use stickslip_kernels::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, Pack, Processor, Work};
+use std::mem::MaybeUninit;
+use stickslip_kernels::lanes::{Laned, Lanes, MOST_LANES, Machine, Pack, Processor, Work};
 use stickslip_kernels::matter::Matter;
 use stickslip_kernels::particles::{ColumnStart, Columns, Particles};
 use stickslip_kernels::pass::members::{Copies, HistoryOfGroup, Members};
@@ -50,6 +55,9 @@ pub fn strain<T: Laned, const D: usize>(
         found.fault.map(|fault| ParticleFault { number: particles.numbers()[fault.particle], ..fault });
     Found { fault, ..found }
 }
+
+/// Nodes that a cell in space sees.
+const MOST_NODES: usize = 27;
 
 struct Visit<'a, T, const D: usize> {
     interior: &'a mut Interior<D>,
@@ -103,7 +111,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
     fn cells<V: Lanes<Real = T>>(&mut self) {
         let constants = self.constants::<V>();
         let form = self.interior.form.clone();
-        let mut copies = Copies::EMPTY;
+        let (mut copies, mut fastest) = (Copies::EMPTY, V::ZERO);
         for (number, cell) in form.cells.iter().enumerate() {
             let mut index = [0; MOST_LANES];
             let count = cell.count as usize;
@@ -115,26 +123,80 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 let verbs = Verbs { update_stress: true, ..Verbs::default() };
                 Members::copied::<V>(&columns, &index[..count], &verbs, &mut copies)
             };
-            if self.lanes(&constants, (number, cell, 0), &members).is_err() {
+            if self.lanes(&constants, (number, cell, 0), &members, &mut fastest).is_err() {
                 self.one_by_one(&self.constants(), (number, cell));
             }
         }
+        self.take(&fastest.numbers().0[..V::COUNT]);
+    }
+
+    /// Takes note of squares of the speeds of waves.
+    #[inline(always)]
+    fn take(&mut self, squares: &[T]) {
+        let most =
+            squares.iter().fold(T::ZERO, |most, &square| if square > most { square } else { most }).sqrt();
+        self.found.signal = if most > self.found.signal { most } else { self.found.signal };
     }
 
     /// Takes the particles of a cell one by one, and finds out what is wrong with whom.
     #[inline(never)]
     fn one_by_one(&mut self, constants: &Constants<Pack<T, 1>>, (number, cell): (usize, &Cell)) {
         let (columns, all) = (self.columns, cell.first..cell.first + cell.count);
+        let mut fastest = Pack::ZERO;
         for (lane, particle) in all.enumerate() {
             let index = [particle];
             let members = Members::in_a_row(&columns, &index);
             let one = Cell { first: particle, count: 1, ..*cell };
-            if let Err(kind) = self.lanes(constants, (number, &one, lane), &members) {
+            if let Err(kind) = self.lanes(constants, (number, &one, lane), &members, &mut fastest) {
                 let particle = particle as usize;
                 let fault = ParticleFault { body: self.body, particle, number: particle as u32, kind };
                 *self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
             }
         }
+        self.take(&fastest.0);
+    }
+
+    /// F of the particles of a cell from a lane of its table on: sum x_I (x) grad N_I.
+    #[inline(always)]
+    fn deformation<V: Lanes<Real = T>>(&self, (number, cell, lane): (usize, &Cell, usize)) -> Matrix<V> {
+        let entries = self.table.of(number);
+        let anchor = self.interior.places[cell.node as usize];
+        let mut own = Matrix::<V>::ZERO;
+        for k in 0..Form::<D>::NODES {
+            let x =
+                self.interior.places[cell.node as usize + self.interior.form.offsets[k] as usize] - anchor;
+            for a in 0..D {
+                // SAFETY: a table has as many numbers as any machine has lanes; a single lane reads one.
+                let slope: V =
+                    unsafe { V::load(entries[k * Table::<T, D>::ENTRIES + 1 + a].0[lane..].as_ptr()) };
+                for i in 0..D {
+                    own.0[i][a] = slope.times_plus(V::splat(T::of(x[i])), own.0[i][a]);
+                }
+            }
+        }
+        own
+    }
+
+    /// Places after that of the cell's first node, and velocities: sum N_I x_I, sum N_I v_I.
+    #[inline(always)]
+    fn motion<V: Lanes<Real = T>>(&self, (number, cell, lane): (usize, &Cell, usize)) -> [Vector<V, D>; 2] {
+        let entries = self.table.of(number);
+        let anchor = self.interior.places[cell.node as usize];
+        let [mut place, mut velocity] = [Vector::<V, D>::ZERO; 2];
+        for k in 0..Form::<D>::NODES {
+            let at = cell.node as usize + self.interior.form.offsets[k] as usize;
+            let (x, v) = (self.interior.places[at] - anchor, self.interior.velocities[at]);
+            // SAFETY: as above.
+            let value: V = unsafe { V::load(entries[k * Table::<T, D>::ENTRIES].0[lane..].as_ptr()) };
+            for i in 0..D {
+                place[i] = value.times_plus(V::splat(T::of(x[i])), place[i]);
+                velocity[i] = value.times_plus(V::splat(T::of(v[i])), velocity[i]);
+            }
+        }
+        for i in 0..D {
+            place[i] += V::splat(T::of(anchor[i]));
+        }
+        [place, velocity]
     }
 
     /// The particles of a cell from a lane of its table on.
@@ -144,31 +206,38 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         constants: &Constants<V>,
         (number, cell, lane): (usize, &Cell, usize),
         members: &Members<'_, T, D>,
+        fastest: &mut V,
     ) -> Result<(), FaultKind> {
-        let entries = self.table.of(number);
-        let node = cell.node as usize;
-        let anchor = self.interior.places[node];
-        let (mut own, mut place, mut velocity) =
-            (Matrix::<V>::ZERO, Vector::<V, D>::ZERO, Vector::<V, D>::ZERO);
-        for k in 0..Form::<D>::NODES {
-            let at = node + self.interior.form.offsets[k] as usize;
-            let (x, v) = (self.interior.places[at], self.interior.velocities[at]);
-            // SAFETY: a table has as many numbers as any machine has lanes; a single lane reads one.
-            let entry =
-                |e: usize| unsafe { V::load(entries[k * Table::<T, D>::ENTRIES + e].0[lane..].as_ptr()) };
-            let value = entry(0);
+        let mut own = Matrix::<V>::ZERO;
+        for n in 0..V::REGISTERS {
+            let here = self.deformation::<V::Register>((number, cell, lane + n * V::Register::COUNT));
             for i in 0..D {
-                let (x, v) = (V::splat(T::of(x[i] - anchor[i])), V::splat(T::of(v[i])));
-                place[i] = value.times_plus(x, place[i]);
-                velocity[i] = value.times_plus(v, velocity[i]);
                 for a in 0..D {
-                    own.0[i][a] = entry(1 + a).times_plus(x, own.0[i][a]);
+                    own.0[i][a].put(n, here.0[i][a]);
                 }
             }
         }
-        for i in 0..D {
-            place[i] += V::splat(T::of(anchor[i]));
-        }
+        let motion = self.motion::<V>((number, cell, lane));
+        let pulls = self.respond(constants, own, motion, members, fastest)?;
+        self.scatter(&pulls, (number, cell, lane));
+        Ok(())
+    }
+
+    /// Gives particles F, their places and their velocities, and the stress that their law answers with; -V P of those
+    /// that there are. `fastest` becomes the larger of itself and the squares of their waves' speeds in undeformed
+    /// lengths, lane by lane [m^2/s^2].
+    ///
+    /// # Errors
+    /// A particle has a fault; of several lanes nothing is stored, of a single one what a report shows.
+    #[inline(always)]
+    fn respond<V: Lanes<Real = T>>(
+        &mut self,
+        constants: &Constants<V>,
+        own: Matrix<V>,
+        [place, velocity]: [Vector<V, D>; 2],
+        members: &Members<'_, T, D>,
+        fastest: &mut V,
+    ) -> Result<Matrix<V>, FaultKind> {
         let before = members.deformation::<V>();
         let mut deformation = own;
         if const { D == 2 } {
@@ -212,11 +281,8 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         let inverse = deformation.inverse();
         let volume = members.mass::<V>() * constants.per_density;
         let speed = modulus * constants.per_density * squared_shrinking::<V, D>(&inverse);
-        let signals = speed.numbers();
-        for &signal in &signals.0[..V::COUNT] {
-            let signal = signal.sqrt();
-            self.found.signal = if signal > self.found.signal { signal } else { self.found.signal };
-        }
+        // What is no number is passed over, on all machines: they give the second one then.
+        *fastest = speed.max(*fastest);
         members.store_vector(ColumnStart::<D>::POSITION, &place);
         members.store_vector(ColumnStart::<D>::VELOCITY, &velocity);
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::SPIN);
@@ -238,8 +304,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 pulls.0[i][a] = -(sum * pull);
             }
         }
-        self.scatter(&pulls, (number, cell, lane));
-        Ok(())
+        Ok(pulls)
     }
 
     /// f_I += sum over the lanes of -V P grad N_I
@@ -249,40 +314,50 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         pulls: &Matrix<V>,
         (number, cell, lane): (usize, &Cell, usize),
     ) {
+        const { assert!(V::REGISTERS <= 2) };
         let entries = self.table.of(number);
-        let node = cell.node as usize;
-        for k in 0..Form::<D>::NODES {
-            // SAFETY: as above.
-            let entry =
-                |e: usize| unsafe { V::load(entries[k * Table::<T, D>::ENTRIES + e].0[lane..].as_ptr()) };
-            let mut force = Vector([V::NOTHING; 3]);
+        // What the first of two registers gives.
+        let mut lower = [MaybeUninit::<[V::Register; 3]>::uninit(); MOST_NODES];
+        for n in 0..V::REGISTERS {
+            let mut own = Matrix::<V::Register>::ZERO;
             for i in 0..D {
                 for a in 0..D {
-                    force[i] = pulls.0[i][a].times_plus(entry(1 + a), force[i]);
+                    own.0[i][a] = pulls.0[i][a].register(n);
                 }
             }
-            let at = node + self.interior.form.offsets[k] as usize;
-            let forces = &mut self.interior.forces[at].0;
-            forces.iter_mut().zip(sums(force.0)).for_each(|(force, sum)| *force += sum.f64());
+            let lane = lane + n * V::Register::COUNT;
+            for k in 0..Form::<D>::NODES {
+                let mut force = [V::Register::NOTHING; 3];
+                for a in 0..D {
+                    // SAFETY: as above.
+                    let slope = unsafe {
+                        V::Register::load(entries[k * Table::<T, D>::ENTRIES + 1 + a].0[lane..].as_ptr())
+                    };
+                    for i in 0..D {
+                        force[i] = own.0[i][a].times_plus(slope, force[i]);
+                    }
+                }
+                if n + 1 < V::REGISTERS {
+                    lower[k].write(force);
+                    continue;
+                }
+                if V::REGISTERS > 1 {
+                    // SAFETY: written for the first register.
+                    let lower = unsafe { lower[k].assume_init() };
+                    for i in 0..D {
+                        force[i] = lower[i] + force[i];
+                    }
+                }
+                let [x, y, z] = force;
+                let sums = V::Register::sums([x, y, z, V::Register::ZERO]);
+                let at = cell.node as usize + self.interior.form.offsets[k] as usize;
+                let force = &mut self.interior.forces[at];
+                for i in 0..D {
+                    force[i] += sums[i].f64();
+                }
+            }
         }
     }
-}
-
-/// The sums over the lanes of three numbers.
-#[inline(always)]
-fn sums<V: Lanes>([x, y, z]: [V; 3]) -> [V::Real; 3] {
-    if V::COUNT == 1 {
-        return [x.numbers().0[0], y.numbers().0[0], z.numbers().0[0]];
-    }
-    let (pairs, last): (Numbers<V::Real>, Numbers<V::Real>) =
-        (x.add_neighbours(y).numbers(), z.add_neighbours(V::ZERO).numbers());
-    let mut sums = [V::Real::ZERO; 3];
-    for pair in 0..V::COUNT / 2 {
-        sums[0] += pairs.0[2 * pair];
-        sums[1] += pairs.0[2 * pair + 1];
-        sums[2] += last.0[2 * pair];
-    }
-    sums
 }
 
 /// A bound of |F^-1 n|^2 over all directions, from the inverse of F: the largest sum of magnitudes in a row of F^-1

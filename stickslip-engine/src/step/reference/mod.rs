@@ -589,7 +589,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }
         }
         let outside = |x: Vector<T, D>| (0..D).any(|k| x[k] < min[k] || x[k] > max[k]);
-        self.settings.references.iter().find_map(|reference| {
+        let beyond = |x: &Vector<f64, D>| (0..D).any(|k| x[k] < min[k].f64() || x[k] > max[k].f64());
+        let nodes = &self.state.references.nodes;
+        self.settings.references.iter().zip(nodes).find_map(|(reference, nodes)| {
+            // Particles lie in the hull of the nodes.
+            if !nodes.places.iter().any(beyond) {
+                return None;
+            }
             let particles = &self.state.bodies[reference.body].particles;
             let particle = (0..particles.len()).find(|&i| outside(particles.place(i).0))?;
             let number = particles.numbers()[particle];

@@ -92,6 +92,11 @@ lanes! { F64x8: __m512d as [f64; 8];
         unsafe { F64x8(_mm512_maskz_mov_pd(mask(count), self.0)) }
     }
     #[inline(always)]
+    fn sums([a, b, c, d]: [Self; 4]) -> [f64; 4] {
+        let halves = <Avx512 as Machine<f64>>::halves;
+        F64x4::sums([halves(a), halves(b), halves(c), halves(d)])
+    }
+    #[inline(always)]
     unsafe fn store_pairs([a, b, c, d]: [Self; 4], pairs: *mut f64) {
         // SAFETY: values of this type exist only where the processor has the instructions; the caller has the room.
         unsafe {
@@ -215,6 +220,17 @@ lanes! { F64x4: __m256d as [f64; 4];
         unsafe {
             F64x4(_mm256_add_pd(_mm256_unpacklo_pd(self.0, other.0), _mm256_unpackhi_pd(self.0, other.0)))
         }
+    }
+    #[inline(always)]
+    fn sums([a, b, c, d]: [Self; 4]) -> [f64; 4] {
+        let mut sums = [0.0; 4];
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe {
+            let [ab, cd] = [_mm256_hadd_pd(a.0, b.0), _mm256_hadd_pd(c.0, d.0)];
+            let halves = [_mm256_permute2f128_pd::<0x20>(ab, cd), _mm256_permute2f128_pd::<0x31>(ab, cd)];
+            _mm256_storeu_pd(sums.as_mut_ptr(), _mm256_add_pd(halves[0], halves[1]));
+        }
+        sums
     }
     #[inline(always)]
     unsafe fn store_pairs([a, b, c, d]: [Self; 4], pairs: *mut f64) {

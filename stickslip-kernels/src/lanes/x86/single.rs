@@ -134,6 +134,10 @@ lanes! { F32x8<const MASKS>: __m256 as [f32; 8];
         unsafe { Self(_mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(a, b, c, d, e, f, g, h))) }
     }
     #[inline(always)]
+    fn sums([a, b, c, d]: [Self; 4]) -> [f32; 4] {
+        F32x4::sums([sum_of_halves(a), sum_of_halves(b), sum_of_halves(c), sum_of_halves(d)])
+    }
+    #[inline(always)]
     fn alternate([a, b]: [f32; 2]) -> Self {
         // SAFETY: values of this type exist only where the processor has the instructions.
         unsafe { Self(_mm256_setr_ps(a, b, a, b, a, b, a, b)) }
@@ -187,6 +191,13 @@ lanes! { F32x4: __m128 as [f32; 4];
         let set = _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(lanes as i32), bits), bits);
         _mm_blendv_ps(elsewhere, there, _mm_castsi128_ps(set))
     };
+    #[inline(always)]
+    fn sums([a, b, c, d]: [Self; 4]) -> [f32; 4] {
+        let mut sums = [0.0; 4];
+        // SAFETY: values of this type exist only where the processor has the instructions.
+        unsafe { _mm_storeu_ps(sums.as_mut_ptr(), _mm_hadd_ps(_mm_hadd_ps(a.0, b.0), _mm_hadd_ps(c.0, d.0))) };
+        sums
+    }
     #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         // SAFETY: every x86-64 processor has the instructions.
