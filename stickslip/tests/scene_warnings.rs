@@ -1,8 +1,8 @@
 //! What is doubtful with a scene but allowed: each case is told of with its place, and the scenes of the repository are
 //! told of nothing but contacts that the grid does not resolve.
 
-use std::path::Path;
-use stickslip::check::{pairs_without_friction, report};
+use std::path::{Path, PathBuf};
+use stickslip::check::{Warning, pairs_without_friction, report};
 use stickslip::scene;
 
 const DOUBTFUL: &str = r#"
@@ -81,26 +81,28 @@ fn each_doubt_is_told_of_where_it_stands_in_the_file() {
     }
 }
 
+/// What the scenes of folders are told before a run.
+fn told_in(folders: &[&str]) -> Vec<(PathBuf, Vec<Warning>)> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(here.join(folder)).expect("a folder"));
+    let paths = files.map(|file| file.expect("a file").path());
+    let told = |path: PathBuf| {
+        let scene = scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+        let report = report(&scene).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()));
+        (path, report.warnings)
+    };
+    paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).map(told).collect()
+}
+
 #[test]
 fn the_scenes_of_the_repository_are_told_of_nothing_but_resolution() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    let mut seen = 0;
-    for part in ["", "paper", "shapes"] {
-        for file in std::fs::read_dir(folder.join(part)).expect("the folder of scenes") {
-            let path = file.expect("a file").path();
-            if path.extension().is_none_or(|end| end != "toml") {
-                continue;
-            }
-            let loaded = scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-            let report =
-                report(&loaded.scene).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()));
-            let others: Vec<_> =
-                report.warnings.iter().filter(|warning| !warning.text.starts_with("not resolved")).collect();
-            assert!(others.is_empty(), "{}: {others:?}", path.display());
-            seen += 1;
-        }
+    let all = told_in(&["../scenes", "../scenes/paper", "../scenes/shapes"]);
+    for (path, warnings) in &all {
+        let others: Vec<_> =
+            warnings.iter().filter(|warning| !warning.text.starts_with("not resolved")).collect();
+        assert!(others.is_empty(), "{}: {others:?}", path.display());
     }
-    assert!(seen >= 10, "{seen}");
+    assert!(all.len() >= 10, "{}", all.len());
 }
 
 /// Lines that anybody reads before a run.
@@ -108,24 +110,12 @@ const READ: usize = 10;
 
 #[test]
 fn no_scene_is_told_of_more_than_anybody_reads() {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders =
-        ["../scenes", "../scenes/paper", "../scenes/shapes", "../scenes/experiment", "../scenes/gallery"];
-    let mut seen = 0;
-    for folder in folders.iter().chain(&["tests/sound"]) {
-        for file in std::fs::read_dir(here.join(folder)).expect("the folder of scenes") {
-            let path = file.expect("a file").path();
-            if path.extension().is_none_or(|end| end != "toml") {
-                continue;
-            }
-            let scene = scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
-            let told =
-                report(&scene).unwrap_or_else(|problem| panic!("{}: {problem}", path.display())).warnings;
-            assert!(told.len() <= READ, "{}: {told:?}", path.display());
-            seen += 1;
-        }
+    let scenes = ["../scenes", "../scenes/paper", "../scenes/shapes", "../scenes/experiment"];
+    let all = told_in(&[&scenes[..], &["../scenes/gallery", "tests/sound"]].concat());
+    for (path, warnings) in &all {
+        assert!(warnings.len() <= READ, "{}: {warnings:?}", path.display());
     }
-    assert!(seen >= 40, "{seen}");
+    assert!(all.len() >= 40, "{}", all.len());
 }
 
 /// A rule that names no friction, and pairs that no rule names; glued bodies rub on nothing.

@@ -85,12 +85,7 @@ impl Command {
     /// Does what the user asks.
     pub fn execute(self) -> Result<(), Failure> {
         outlive_file_limits();
-        Processor::limit().map_err(|found| {
-            let name = Processor::LIMIT;
-            Failure::Input(miette!(
-                "the variable {name}: found {found}, allowed: avx2, base, or no such variable"
-            ))
-        })?;
+        Processor::limit().map_err(|refused| Failure::Input(miette!("{refused}")))?;
         match self {
             Command::Run(arguments) => arguments.execute(),
             Command::Resume(arguments) => arguments.execute(),

@@ -7,7 +7,7 @@ use crate::sweep;
 use clap::Args;
 use miette::miette;
 use std::path::{Path, PathBuf};
-use stickslip::observe::{ReadError, Results};
+use stickslip::observe::{CHART, ReadError, Results};
 
 /// Draw what one run or several recorded over time, with the exact solution where the scene has one; or what a sweep
 /// came to.
@@ -102,8 +102,8 @@ impl Arguments {
 
     fn draw(&self, chart: &Chart) -> Result<(), Failure> {
         let usual = || match &self.folders[..] {
-            [folder] => folder.join("plot.png"),
-            _ => PathBuf::from("plot.png"),
+            [folder] => folder.join(CHART),
+            _ => PathBuf::from(CHART),
         };
         let out = self.out.clone().unwrap_or_else(usual);
         draw(chart, &out, chart.size())?;

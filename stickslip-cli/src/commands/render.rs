@@ -15,7 +15,7 @@ use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 use stickslip::image::Image;
-use stickslip::observe::{FRAMES_PER_SECOND, Frame, Results};
+use stickslip::observe::{FRAMES_PER_SECOND, Frame, PICTURE, Results};
 
 /// Draw pictures of a run's snapshots.
 #[derive(Debug, Args)]
@@ -248,7 +248,7 @@ impl Arguments {
         if let (Some(out), [frame]) = (self.out.as_ref().filter(|out| is_model(out)), &chosen[..]) {
             return self.write_model(out, &results, frame);
         }
-        let out = self.file("picture.png")?;
+        let out = self.file(PICTURE)?;
         let pictures = self.pictures(&results, &chosen)?;
         let drawn: Result<Vec<Image>, Failure> = chosen.iter().map(|frame| pictures.picture(frame)).collect();
         save(&side_by_side(&drawn?), &out)?;

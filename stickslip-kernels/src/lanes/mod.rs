@@ -6,6 +6,24 @@
 //! together, once. All processors that can do so give the same bits: x86-64 with AVX2 and FMA, and 64-bit ARM. Those
 //! that cannot round twice, and differ by round-off.
 
+/// What lanes in a single register have of [`Lanes`].
+macro_rules! in_one_register {
+    () => {
+        type Register = Self;
+        const REGISTERS: usize = 1;
+
+        #[inline(always)]
+        fn register(self, _: usize) -> Self {
+            self
+        }
+
+        #[inline(always)]
+        fn put(&mut self, _: usize, register: Self) {
+            *self = register;
+        }
+    };
+}
+
 mod pack;
 mod pair;
 #[cfg(target_arch = "x86_64")]
@@ -326,13 +344,17 @@ impl Processor {
     /// What [`Processor::LIMIT`] allows at most.
     ///
     /// # Errors
-    /// It says something else, which is this.
+    /// It says something else: what was found and what is allowed.
     pub fn limit() -> Result<Self, String> {
         match std::env::var_os(Self::LIMIT) {
             None => Ok(Processor::Avx512),
             Some(limit) if limit == "avx2" => Ok(Processor::Avx2),
             Some(limit) if limit == "base" => Ok(Processor::Any),
-            Some(other) => Err(other.to_string_lossy().into_owned()),
+            Some(other) => Err(format!(
+                "the variable {}: found {}, allowed: avx2, base, or no such variable",
+                Self::LIMIT,
+                other.to_string_lossy()
+            )),
         }
     }
 

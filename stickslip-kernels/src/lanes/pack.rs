@@ -123,16 +123,7 @@ impl<T: Real, const N: usize> Number for Pack<T, N> {
 impl<T: Real, const N: usize> Lanes for Pack<T, N> {
     type Real = T;
     const COUNT: usize = N;
-    type Register = Self;
-    const REGISTERS: usize = 1;
-    #[inline(always)]
-    fn register(self, _: usize) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn put(&mut self, _: usize, register: Self) {
-        *self = register;
-    }
+    in_one_register!();
 
     #[inline(always)]
     fn splat(x: T) -> Self {

@@ -204,13 +204,6 @@ impl<V: Lanes> Lanes for RegisterPair<V> {
     }
 
     #[inline(always)]
-    fn sums(columns: [Self; 4]) -> [V::Real; 4] {
-        const { assert!(V::COUNT == 4) };
-        let [a, b, c, d] = columns;
-        V::sums([a.0 + a.1, b.0 + b.1, c.0 + c.1, d.0 + d.1])
-    }
-
-    #[inline(always)]
     fn inverse_cube_root_guess(self) -> Self {
         RegisterPair(self.0.inverse_cube_root_guess(), self.1.inverse_cube_root_guess())
     }

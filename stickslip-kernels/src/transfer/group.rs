@@ -458,7 +458,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             if stress.is_some() {
                 self.put_slopes(i, &mut slopes);
             }
-            // Where two registers hold a row, the factors of all particles would spill: so they are loaded where needed.
+            // Where two registers hold a row, the factors of all particles would spill: they are loaded where needed.
             let (weights, slopes) = match <M::Wide as Lanes>::REGISTERS {
                 1 => (&weights, &slopes),
                 _ => (black_box(&weights), black_box(&slopes)),
@@ -606,8 +606,10 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
     ) {
         for (n, at) in Self::nodes() {
-            let weights = Factors::of(self.weight(n, at));
-            let mut slopes = [Factors::EMPTY; D];
+            let (mut weights, mut slopes) = (Factors::EMPTY, [Factors::EMPTY; D]);
+            if momentum.is_some() {
+                weights.put(self.weight(n, at));
+            }
             if stress.is_some() {
                 for axis in 0..D {
                     slopes[axis].put(-self.table.slope(n, axis));
@@ -666,9 +668,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                 }
             }
         }
-        for (p, part) in (0..self.count.min(MOST_LANES))
-            .flat_map(|p| (0..<M::Wide as Lanes>::REGISTERS).map(move |part| (p, part)))
-        {
+        let parts = <M::Wide as Lanes>::REGISTERS;
+        for turn in 0..parts * self.count.min(MOST_LANES) {
+            let (p, part) = (turn / parts, turn % parts);
             let (mut rows, mut momenta) =
                 ([Register::<M, V::Real>::ZERO; 3], [Register::<M, V::Real>::ZERO; 4]);
             if let Some([first, steps @ ..]) = momentum {
@@ -810,13 +812,6 @@ struct Factors<T: Copy>(MaybeUninit<[T; MOST_LANES]>);
 impl<T: Real> Factors<T> {
     /// To be [put](Factors::put).
     const EMPTY: Self = Factors(MaybeUninit::uninit());
-
-    #[inline(always)]
-    fn of<V: Lanes<Real = T>>(lanes: V) -> Self {
-        let mut factors = Self::EMPTY;
-        factors.put(lanes);
-        factors
-    }
 
     #[inline(always)]
     fn put<V: Lanes<Real = T>>(&mut self, lanes: V) {

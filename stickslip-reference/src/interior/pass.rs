@@ -56,9 +56,6 @@ pub fn strain<T: Laned, const D: usize>(
     Found { fault, ..found }
 }
 
-/// Nodes that a cell in space sees.
-const MOST_NODES: usize = 27;
-
 struct Visit<'a, T, const D: usize> {
     interior: &'a mut Interior<D>,
     table: &'a Table<T, D>,
@@ -317,7 +314,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         const { assert!(V::REGISTERS <= 2) };
         let entries = self.table.of(number);
         // What the first of two registers gives.
-        let mut lower = [MaybeUninit::<[V::Register; 3]>::uninit(); MOST_NODES];
+        let mut lower = [MaybeUninit::<[V::Register; 3]>::uninit(); Form::<3>::NODES];
         for n in 0..V::REGISTERS {
             let mut own = Matrix::<V::Register>::ZERO;
             for i in 0..D {

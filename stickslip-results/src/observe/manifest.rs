@@ -5,7 +5,7 @@ use super::folder::OutputFolder;
 use super::work::work;
 use crate::check::Warning;
 use crate::door::{RankShare, RelaxationState};
-use crate::scene::{Loaded, Scene, SceneError, load, parse, steers_terminal};
+use crate::scene::{Loaded, Scene, SceneError, load, parse, steers_text};
 use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
@@ -123,14 +123,9 @@ impl SceneRecord {
     }
 }
 
-/// Whether a letter steers a terminal: it is replaced where a record is read.
-fn steers(letter: char) -> bool {
-    steers_terminal(letter) && !matches!(letter, '\n' | '\r' | '\t')
-}
-
 /// Whether JSON may have such letters, as they are or written out.
 fn may_steer(text: &str) -> bool {
-    text.contains(steers) || ["\\u", "\\b", "\\f"].iter().any(|written| text.contains(written))
+    text.contains(steers_text) || ["\\u", "\\b", "\\f"].iter().any(|written| text.contains(written))
 }
 
 /// A key by which the parser of JSON knows what it makes itself.
@@ -530,12 +525,12 @@ fn find_sum(bytes: &[u8]) -> Option<usize> {
 /// Puts U+FFFD in the place of each control character in a text of a record; new lines and tabs stay.
 fn replace_control_characters(record: &mut Value) {
     match record {
-        Value::String(text) if text.contains(steers) => *text = text.replace(steers, "\u{fffd}"),
+        Value::String(text) if text.contains(steers_text) => *text = text.replace(steers_text, "\u{fffd}"),
         Value::Array(list) => list.iter_mut().for_each(replace_control_characters),
         Value::Object(map) => {
-            if map.keys().any(|key| key.contains(steers)) {
+            if map.keys().any(|key| key.contains(steers_text)) {
                 let entries = std::mem::take(map).into_iter();
-                map.extend(entries.map(|(key, value)| (key.replace(steers, "\u{fffd}"), value)));
+                map.extend(entries.map(|(key, value)| (key.replace(steers_text, "\u{fffd}"), value)));
             }
             map.values_mut().for_each(replace_control_characters);
         }

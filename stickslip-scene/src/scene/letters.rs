@@ -1,9 +1,14 @@
 //! Letters of texts that come from files, which terminals and other files take.
 
-/// Whether a letter steers a terminal: it moves the cursor, begins a command or a line, or turns the direction of writing
-/// (embeddings, overrides and isolates of Unicode's bidirectional algorithm).
+/// Whether a letter steers a terminal: it moves the cursor, begins a command or a line, or turns the direction of
+/// writing (embeddings, overrides and isolates of Unicode's bidirectional algorithm).
 pub fn steers_terminal(letter: char) -> bool {
     letter.is_control() || matches!(letter, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The same in a text of lines and tabs.
+pub fn steers_text(letter: char) -> bool {
+    steers_terminal(letter) && !matches!(letter, '\n' | '\r' | '\t')
 }
 
 /// A text with escapes for letters that would steer a terminal.

@@ -44,7 +44,7 @@ pub use fringes::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensit
 pub use gravity::Gravity;
 pub use health::{Health, HealthCheck, HealthRule, Response};
 pub use joints::{Joint, JointKind, Motor};
-pub use letters::{escaped, shortened, steers_terminal};
+pub use letters::{escaped, shortened, steers_terminal, steers_text};
 pub use load::{Loaded, load, parse, parse_beside};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{

@@ -2,7 +2,7 @@
 
 use super::document_node::{DocumentNode, Value};
 use super::error::{Fault, Mistake, SceneError};
-use super::letters::steers_terminal;
+use super::letters::steers_text;
 use super::{Problem, overrides};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -224,7 +224,7 @@ impl Document {
 
 /// A text of the same length without what would steer a terminal.
 fn without_control(text: &str) -> String {
-    let letter = |letter: char| match steers_terminal(letter) && !matches!(letter, '\n' | '\r' | '\t') {
+    let letter = |letter: char| match steers_text(letter) {
         true => "?".repeat(letter.len_utf8()),
         false => letter.to_string(),
     };

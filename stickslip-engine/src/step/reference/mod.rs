@@ -588,16 +588,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 _ => max[wall.axis] = T::of(f64::INFINITY),
             }
         }
-        let outside = |x: Vector<T, D>| (0..D).any(|k| x[k] < min[k] || x[k] > max[k]);
-        let beyond = |x: &Vector<f64, D>| (0..D).any(|k| x[k] < min[k].f64() || x[k] > max[k].f64());
+        let [min, max] = [min, max].map(Vector::space);
+        let outside = |x: [f64; 3]| (0..D).any(|k| x[k] < min[k] || x[k] > max[k]);
         let nodes = &self.state.references.nodes;
         self.settings.references.iter().zip(nodes).find_map(|(reference, nodes)| {
             // Particles lie in the hull of the nodes.
-            if !nodes.places.iter().any(beyond) {
+            if !nodes.places.iter().any(|place| outside(place.space())) {
                 return None;
             }
             let particles = &self.state.bodies[reference.body].particles;
-            let particle = (0..particles.len()).find(|&i| outside(particles.place(i).0))?;
+            let particle = (0..particles.len()).find(|&i| outside(particles.place(i).0.space()))?;
             let number = particles.numbers()[particle];
             Some(ParticleFault { body: reference.body, particle, number, kind: FaultKind::Escaped })
         })

@@ -201,16 +201,7 @@ macro_rules! lanes {
         impl $(<const $flag: bool>)? Lanes for $name $(<$flag>)? {
             type Real = $t;
             const COUNT: usize = $count;
-            type Register = Self;
-            const REGISTERS: usize = 1;
-            #[inline(always)]
-            fn register(self, _: usize) -> Self {
-                self
-            }
-            #[inline(always)]
-            fn put(&mut self, _: usize, register: Self) {
-                *self = register;
-            }
+            in_one_register!();
             #[inline(always)]
             fn splat(x: $t) -> Self {
                 // SAFETY: values of this type exist only where the processor has the instructions.

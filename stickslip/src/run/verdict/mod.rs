@@ -104,7 +104,7 @@ impl CheckInputs<'_> {
 
     /// Those of them that are computed on the common grid: what a grid does to particles, it does to these.
     fn on_grid(&self) -> impl Iterator<Item = usize> {
-        self.free().filter(|&body| self.scene.interior(body) == Interior::Grid)
+        on_grid(self.scene)
     }
 
     /// Speed of the fastest wave in an undeformed body [m/s].
@@ -118,6 +118,12 @@ impl CheckInputs<'_> {
         let material = &self.scene.materials[self.scene.bodies[body].material];
         material.law.wave_modulus_at_rest(self.scene.dimension.thickness())
     }
+}
+
+/// Bodies that deform on the common grid.
+fn on_grid(scene: &Scene) -> impl Iterator<Item = usize> {
+    let is_on_it = |&body: &usize| !scene.bodies[body].is_rigid() && scene.interior(body) == Interior::Grid;
+    (0..scene.bodies.len()).filter(is_on_it)
 }
 
 /// Something wrong at one time.

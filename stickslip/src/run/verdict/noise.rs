@@ -1,10 +1,10 @@
 //! Energy that became noise and was damped, though the scene asks for no damping; and bodies that move on and on while
 //! local damping, which is for bodies at rest, slows them.
 
-use super::{Check, CheckInputs, Finding, asks_for_damping, exceeds, norm, share};
+use super::{Check, CheckInputs, Finding, asks_for_damping, exceeds, norm, on_grid, share};
 use crate::geometry::Bounds;
 use crate::observe::{Memory, OutputError};
-use crate::scene::{BasisKind, Damping, HealthCheck, Interior, Scene};
+use crate::scene::{BasisKind, Damping, HealthCheck, Scene};
 use crate::transfer::pic_share;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -45,8 +45,7 @@ impl Check for NoiseCheck {
             return "local damping is for bodies that come to rest: leave it out, or take [damping] viscous of a known \
                     rate";
         }
-        let on_grid = |body: usize| !scene.bodies[body].is_rigid() && scene.interior(body) == Interior::Grid;
-        if !(0..scene.bodies.len()).any(on_grid) {
+        if on_grid(scene).next().is_none() {
             return "what moves loses its motion to it: try smaller cells; see the column `damping` of energy.csv";
         }
         match scene.discretization.basis {
@@ -61,8 +60,8 @@ impl Check for NoiseCheck {
             }
             BasisKind::Spline => {
                 "what bends, twists, spins or rolls loses its motion to it: try interior = \"reference\" for bodies \
-                 that stay whole, smaller cells, space.basis = \"gimp\", by which what rolls or swings loses less than by \
-                 splines; see the column `damping` of energy.csv"
+                 that stay whole, smaller cells, space.basis = \"gimp\", by which what rolls or swings loses less than \
+                 by splines; see the column `damping` of energy.csv"
             }
         }
     }
