@@ -20,6 +20,8 @@ pub struct March {
     pace: Pace,
     /// How often a step that fails is halved, at most.
     retries: usize,
+    /// Whether particles may stay behind.
+    unseen: bool,
     /// What failed in the last step, before it succeeded.
     failed: Option<FailedStep>,
 }
@@ -109,13 +111,19 @@ impl March {
 
     /// To a time [s], after a step of this length [s].
     pub fn from(last: f64, until: f64) -> Self {
-        March { until, last, pace: Pace::default(), retries: 0, failed: None }
+        March { until, last, pace: Pace::default(), retries: 0, unseen: false, failed: None }
     }
 
     /// At this pace. A step that fails is taken again from memory, with half of its length and half of that, down to
     /// 2^-`retries` of the stable step; the state is copied before each step, unless `retries` is 0.
     pub fn with_retries(mut self, pace: Pace, retries: usize) -> Self {
         (self.pace, self.retries) = (pace, retries);
+        self
+    }
+
+    /// By [steps after which particles may stay behind](Simulation::step_unseen): who looks asks them to be shown.
+    pub fn unseen(mut self) -> Self {
+        self.unseen = true;
         self
     }
 
@@ -169,7 +177,7 @@ impl March {
         let longest = self.longest(self.until - before, simulation);
         self.failed = None;
         match self.retries {
-            0 => simulation.step(longest)?,
+            0 => self.take_step(longest, simulation)?,
             _ => self.step_again(longest, simulation)?,
         };
         self.pace.part = self.pace.limit.min(GROWTH * self.pace.part);
@@ -181,13 +189,17 @@ impl March {
         Ok(Some(self.last))
     }
 
+    fn take_step(&self, longest: f64, simulation: &mut dyn Simulation) -> Result<f64, StepError> {
+        if self.unseen { simulation.step_unseen(longest) } else { simulation.step(longest) }
+    }
+
     /// Takes a step, with half of its length if it fails.
     fn step_again(&mut self, longest: f64, simulation: &mut dyn Simulation) -> Result<f64, StepError> {
         simulation.hold();
         let least = self.pace.limit * 0.5_f64.powi(self.retries as i32);
         let mut longest = longest;
         loop {
-            let error = match simulation.step(longest) {
+            let error = match self.take_step(longest, simulation) {
                 Ok(step) => return Ok(step),
                 Err(error) => error,
             };

@@ -101,6 +101,8 @@ const OF_A_BODY: usize = 16;
 #[derive(Serialize, Deserialize)]
 enum Call {
     Step(f64),
+    StepUnseen(f64),
+    Show,
     Rebuild,
     Hold,
     TakeBack,
@@ -166,6 +168,8 @@ impl Part {
         match read(&self.ranks.hear_first(&[])) {
             // A step that fails does so on all ranks, and the first tells the user.
             Call::Step(longest) => drop(self.own.step(longest)),
+            Call::StepUnseen(longest) => drop(self.own.step_unseen(longest)),
+            Call::Show => self.own.show(),
             Call::Rebuild => self.own.rebuild_workspace(),
             Call::Hold => self.own.hold(),
             Call::TakeBack => drop(self.own.take_back()),
@@ -676,6 +680,14 @@ impl View for Leader {
 impl Simulation for Leader {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         self.tell_mut(&Call::Step(longest)).own.step(longest)
+    }
+
+    fn step_unseen(&mut self, longest: f64) -> Result<f64, StepError> {
+        self.tell_mut(&Call::StepUnseen(longest)).own.step_unseen(longest)
+    }
+
+    fn show(&mut self) {
+        self.tell_mut(&Call::Show).own.show();
     }
 
     fn rebuild_workspace(&mut self) {

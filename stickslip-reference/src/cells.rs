@@ -4,8 +4,32 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use stickslip_kernels::lanes::{MOST_LANES, Numbers};
 use stickslip_mechanics::geometry::form::spline::WIDTH;
-use stickslip_mechanics::geometry::form::{Cell, Form};
+use stickslip_mechanics::geometry::form::{Cell, Form, PER_SIDE};
 use stickslip_mechanics::tensor::{Real, Vector};
+
+/// Places in a cell where its particles lie if the shape does not cut their parts, the last axis first: in space; in
+/// the plane, half of them.
+pub const SITES: usize = PER_SIDE.pow(3);
+
+/// Particles along an axis where their parts are whole, from the cell's lower face [cells].
+pub const ALONG: [f64; PER_SIDE] = [0.25, 0.75];
+
+/// How near to these places they lie [cells].
+const NEAR: f64 = 1e-9;
+
+/// Cells one after the other along the last axis, whose particles lie where those of whole cells do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// First node of the first one.
+    pub node: u32,
+    /// How many, at most [`MOST_LANES`].
+    pub count: u32,
+    /// Which of the lists of volumes has those of its particles.
+    volumes: u32,
+}
+
+/// Volumes of the particles of a block: place by place a number for each cell, zero where there is none [m^3, m^2].
+pub type Volumes<T> = [Numbers<T>; SITES];
 
 /// Values and slopes of the functions at the particles of cells: cells with the same parts share theirs, also those of
 /// several bodies.
@@ -14,6 +38,11 @@ pub struct Table<T, const D: usize> {
     /// Of each cell, where its entries begin.
     starts: Vec<u32>,
     entries: Arc<Vec<Numbers<T>>>,
+    /// Cells that go side by side.
+    pub blocks: Vec<Block>,
+    /// Numbers of the others.
+    pub others: Vec<u32>,
+    volumes: Arc<Vec<Volumes<T>>>,
 }
 
 /// What tells cells apart: the places of their parts, the axes of their grid, and their side, to a billionth.
@@ -35,9 +64,17 @@ impl<T: Real, const D: usize> Table<T, D> {
     /// Of the grids of some bodies, one for each.
     pub fn of_all<'a>(forms: impl Iterator<Item = &'a Form<D>>) -> Vec<Self> {
         let mut all = Entries { entries: Vec::new(), known: HashMap::new() };
-        let starts: Vec<Vec<u32>> = forms.map(|form| all.starts(form)).collect();
-        let entries = Arc::new(all.entries);
-        starts.into_iter().map(|starts| Table { starts, entries: entries.clone() }).collect()
+        let mut lists = VolumeLists { lists: Vec::new(), known: HashMap::new() };
+        let of_bodies: Vec<_> = forms.map(|form| (all.starts(form), lists.blocks(form))).collect();
+        let (entries, volumes) = (Arc::new(all.entries), Arc::new(lists.lists));
+        let table = |(starts, (blocks, others))| Table {
+            starts,
+            entries: entries.clone(),
+            blocks,
+            others,
+            volumes: volumes.clone(),
+        };
+        of_bodies.into_iter().map(table).collect()
     }
 
     /// Of a grid.
@@ -49,6 +86,12 @@ impl<T: Real, const D: usize> Table<T, D> {
     #[inline(always)]
     pub fn of(&self, cell: usize) -> &[Numbers<T>] {
         &self.entries[self.starts[cell] as usize..][..Self::ENTRIES * Form::<D>::NODES]
+    }
+
+    /// Volumes of the particles of a block.
+    #[inline(always)]
+    pub fn volumes(&self, block: &Block) -> &Volumes<T> {
+        &self.volumes[block.volumes as usize]
     }
 
     /// Entries of a node: its value and its slopes.
@@ -94,4 +137,63 @@ impl<T: Real, const D: usize> Entries<T, D> {
         }
         start as u32
     }
+}
+
+/// Volumes of blocks, each list once.
+struct VolumeLists<T> {
+    lists: Vec<Volumes<T>>,
+    known: HashMap<Vec<u64>, u32>,
+}
+
+impl<T: Real> VolumeLists<T> {
+    /// The blocks of a grid, and the numbers of the cells that belong to none.
+    fn blocks<const D: usize>(&mut self, form: &Form<D>) -> (Vec<Block>, Vec<u32>) {
+        let (mut blocks, mut others) = (Vec::<(Block, Volumes<T>)>::new(), Vec::new());
+        for (number, cell) in form.cells.iter().enumerate() {
+            let Some(of_cell) = at_sites(form, cell) else {
+                others.push(number as u32);
+                continue;
+            };
+            let follows =
+                |block: &Block| (block.count as usize) < MOST_LANES && block.node + block.count == cell.node;
+            if !blocks.last().is_some_and(|(block, _)| follows(block)) {
+                let block = Block { node: cell.node, count: 0, volumes: 0 };
+                blocks.push((block, [Numbers::ZERO; SITES]));
+            }
+            let (block, volumes) = blocks.last_mut().expect("one has been pushed");
+            for (list, volume) in volumes.iter_mut().zip(of_cell) {
+                list.0[block.count as usize] = T::of(volume);
+            }
+            block.count += 1;
+        }
+        let numbered = |(block, list)| Block { volumes: self.number(list), ..block };
+        (blocks.into_iter().map(numbered).collect(), others)
+    }
+
+    fn number(&mut self, list: Volumes<T>) -> u32 {
+        let key = list.iter().flat_map(|volumes| volumes.0.map(|volume| volume.f64().to_bits())).collect();
+        *self.known.entry(key).or_insert_with(|| {
+            self.lists.push(list);
+            (self.lists.len() - 1) as u32
+        })
+    }
+}
+
+/// Volumes of a cell's particles place by place, if all of them lie where those of whole cells do [m^3, m^2].
+fn at_sites<const D: usize>(form: &Form<D>, cell: &Cell) -> Option<[f64; SITES]> {
+    let mut volumes = [0.0; SITES];
+    for particle in cell.first as usize..(cell.first + cell.count) as usize {
+        let weights = form.weights(form.places[particle]);
+        if weights.node != cell.node as usize {
+            return None;
+        }
+        let mut site = 0;
+        for axis in weights.axes {
+            // The last slope of a function is its place in the cell.
+            let at = axis.slope[WIDTH - 1];
+            site = site * PER_SIDE + ALONG.iter().position(|along| (at - along).abs() < NEAR)?;
+        }
+        volumes[site] = form.volumes[particle];
+    }
+    Some(volumes)
 }

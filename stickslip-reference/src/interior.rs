@@ -1,8 +1,9 @@
 //! A body on a grid of its own undeformed places: its nodes, and what a step does to them.
 
+mod blocks;
 mod pass;
 
-pub use pass::{Straining, strain};
+pub use pass::{Asked, Straining, strain};
 
 use std::sync::Arc;
 use stickslip_mechanics::geometry::form::{Form, Reaction, Weights};

@@ -174,6 +174,16 @@ pub trait Simulation: View + Send {
     /// # Errors
     /// The step's failure, with the simulation left as it was when it went wrong, so that it can still be looked at.
     fn step(&mut self, longest: f64) -> Result<f64, StepError>;
+    /// The same, faster where nobody looks: particles may stay behind. Who looks at particles, or at what they add up
+    /// to, asks for [`Simulation::show`] before. The next step is the same.
+    ///
+    /// # Errors
+    /// As for [`Simulation::step`].
+    fn step_unseen(&mut self, longest: f64) -> Result<f64, StepError> {
+        self.step(longest)
+    }
+    /// Lets particles that stayed behind catch up.
+    fn show(&mut self) {}
     /// Drops all that can be made anew from the state between two steps: grid, lists, room to work in. The next step
     /// makes it anew, with the same bits as without.
     fn rebuild_workspace(&mut self) {}

@@ -224,10 +224,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.account_springs(dt); //                              and of springs
         Ok(())
     }
-}
 
-impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+    /// A step, at most so long, and how long it was [s].
+    fn take_step(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let time = self.state.time;
         let stable = self.stable();
@@ -256,6 +255,22 @@ impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
         self.remove_leavers();
         self.among.iter_mut().zip(begun).for_each(|(among, begun)| among.end(begun));
         Ok(dt)
+    }
+}
+
+impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        self.workspace.unseen = false;
+        self.take_step(longest)
+    }
+
+    fn step_unseen(&mut self, longest: f64) -> Result<f64, StepError> {
+        self.workspace.unseen = true;
+        self.take_step(longest)
+    }
+
+    fn show(&mut self) {
+        self.show_references();
     }
 
     fn rebuild_workspace(&mut self) {
@@ -304,7 +319,7 @@ impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
     }
 
     fn save_columns(&self, body: usize, take: &mut dyn FnMut(&[u32], SavedColumn)) -> bool {
-        let particles = &self.state.bodies[body].particles;
+        let particles = &self.shown()[body].particles;
         saving::columns(particles).for_each(|column| take(particles.numbers(), column));
         true
     }

@@ -110,7 +110,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let still = !self.settings.rules.grow(time)
             && self.settings.gravity.is_still(time, dt, end)
             && self.settings.loads.iter().all(|load| load.is_still(time, dt, end));
-        self.state.relaxation.at_rest = balanced && still && !motions.any(driven) && {
+        let resting = balanced && still && !motions.any(driven);
+        self.state.relaxation.at_rest = resting && {
             let [kinetic, strain] = self.energies();
             kinetic <= residual * residual * strain
         };
@@ -123,7 +124,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     }
 
     /// Kinetic and strain energy of the deformable bodies [J].
-    fn energies(&self) -> [f64; 2] {
+    fn energies(&mut self) -> [f64; 2] {
+        self.show_references();
         let totals = self.totals();
         let free = totals.iter().filter(|(body, _)| !self.state.bodies[*body].is_rigid());
         // The first rank knows the totals of all bodies.

@@ -19,7 +19,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The state as data.
     pub(super) fn saved(&self) -> SavedState {
         let mut saved = self.saved_rest();
-        for (saved, body) in saved.bodies.iter_mut().zip(&self.state.bodies) {
+        for (saved, body) in saved.bodies.iter_mut().zip(self.shown()) {
             saved.numbers = body.particles.numbers().to_vec();
             saved.columns = columns(&body.particles).collect();
         }
@@ -28,7 +28,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// The particles of the state, body by body, at most so many at a time.
     pub(super) fn share_out(&self, most: usize, take: &mut dyn FnMut(Vec<SavedShare>)) {
-        let bodies = &self.state.bodies;
+        let bodies = self.shown();
         let share = |body: usize, some: Range<usize>| {
             let particles = &bodies[body].particles;
             let columns = columns_of_some(particles, some.clone()).collect();

@@ -126,11 +126,20 @@ impl<T: Laned, const D: usize> ColumnSource for SnapshotRows<'_, T, D> {
 }
 
 impl<T: Laned, const D: usize> Engine<T, D> {
+    /// The bodies, of which no particle is behind.
+    ///
+    /// # Panics
+    /// Some are: who looks asks for [`Simulation::show`] before.
+    pub(super) fn shown(&self) -> &[Body<T, D>] {
+        assert!(!self.state.references.behind, "particles are shown before somebody looks at them");
+        &self.state.bodies
+    }
+
     /// What the particles of each body add up to, by body, summed once a step for whoever asks: on the first of several
     /// ranks of all, on the others of those of which they have particles.
     pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
-        let (bodies, kernels) = (&self.state.bodies, self.kernels);
+        let (bodies, kernels) = (self.shown(), self.kernels);
         let sum = |range: Range<usize>| {
             (range.start, self.with_nodes(range.start, bodies[range.start].totals(kernels)))
         };
@@ -147,7 +156,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// What the particles of a body add up to.
     pub(super) fn totals_of(&self, number: usize) -> Totals {
-        let body = &self.state.bodies[number];
+        let body = &self.shown()[number];
         let totals = match &self.among {
             Some(among) => among.totals_of(body, self.kernels),
             None => body.totals(self.kernels),
@@ -387,19 +396,19 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
     }
 
     fn snapshot(&self) -> ParticleSnapshot {
-        self.snapshot_of(&SnapshotRows::of(&self.state.bodies))
+        self.snapshot_of(&SnapshotRows::of(self.shown()))
     }
 
     fn snapshot_between(&self, ends: [(u32, u32); 2], wanted: &dyn Fn(u32, u32) -> bool) -> ParticleSnapshot {
-        self.snapshot_of(&SnapshotRows::between(&self.state.bodies, ends, wanted))
+        self.snapshot_of(&SnapshotRows::between(self.shown(), ends, wanted))
     }
 
     fn visit(&self, body: usize, look: &mut dyn FnMut(&ParticleView)) {
-        self.state.bodies[body].particles.iter().for_each(|particle| look(&shown(&particle)));
+        self.shown()[body].particles.iter().for_each(|particle| look(&shown(&particle)));
     }
 
     fn fastest(&self, body: usize, against: [f64; 3]) -> Option<ParticleView> {
-        let Fastest { particle, .. } = fastest_motion(&self.state.bodies, body, against)?;
+        let Fastest { particle, .. } = fastest_motion(self.shown(), body, against)?;
         Some(shown(&self.state.bodies[body].particles.get(particle)))
     }
 
@@ -408,7 +417,7 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
     }
 
     fn column(&self, body: usize, name: &str) -> Result<ColumnRef<'_>, NoColumn> {
-        let particles = &self.state.bodies[body].particles;
+        let particles = &self.shown()[body].particles;
         let found = particles.column(name);
         let (described, components) = found.ok_or_else(|| NoColumn::among(&self.columns(body), name))?;
         let at =
@@ -425,7 +434,7 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
     }
 
     fn trace(&self, body: usize, wanted: &[u32]) -> Vec<TracedParticle> {
-        let particles = &self.state.bodies[body].particles;
+        let particles = &self.shown()[body].particles;
         let cell = self.settings.lattice.cell;
         let traced = |i: usize| {
             let particle = particles.get(i);

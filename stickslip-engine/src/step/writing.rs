@@ -58,6 +58,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
         let gravity = self.settings.gravity.constant().unwrap_or_default();
+        self.show_references();
         let before = Holding::of_particles(&self.totals_of(number), gravity);
         if let Some(place) = reference {
             self.put_velocities(place, values);

@@ -1,21 +1,23 @@
 //! The one pass of a step over the particles: F from places, stress, forces on the nodes.
 //!
 //! All particles of a cell at a time, one in each lane: they see the same nodes. Sums of many terms go register by
-//! register.
+//! register. Whole cells of elastic bodies go by [`super::blocks`], and their particles are told only when somebody
+//! looks.
 
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
 use super::Interior;
+use super::blocks::{Elastic, Rows, Whole};
 use crate::cells::Table;
 use std::mem::MaybeUninit;
 use stickslip_kernels::lanes::{Laned, Lanes, MOST_LANES, Machine, Pack, Processor, Work};
 use stickslip_kernels::matter::Matter;
-use stickslip_kernels::particles::{ColumnStart, Columns, Particles};
+use stickslip_kernels::particles::{ColumnStart, Columns, Particles, deformation_entries};
 use stickslip_kernels::pass::members::{Copies, HistoryOfGroup, Members};
 use stickslip_kernels::pass::{FaultKind, Found, ParticleFault, Verbs};
 use stickslip_mechanics::geometry::form::{Cell, Form};
-use stickslip_mechanics::material::{Material, Motion, Thickening, Thickness};
+use stickslip_mechanics::material::{Material, Motion, NeoHookean, Thickening, Thickness};
 use stickslip_mechanics::tensor::{Matrix, Number, Symmetric, Vector};
 
 /// What the pass is told.
@@ -27,6 +29,19 @@ pub struct Straining<T> {
     pub dt: T,
     /// What the processor has.
     pub processor: Processor,
+    /// What of it is asked for.
+    pub asked: Asked,
+}
+
+/// What the particles are asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Asked {
+    /// Forces on the nodes: particles of elastic bodies stay behind, see [`Found`]; others take part in everything.
+    Forces,
+    /// What somebody sees who looks at particles that stayed behind: forces stay as they are.
+    State,
+    /// Both.
+    Everything,
 }
 
 /// Lets the particles take the deformation that the nodes' places say, and the stress of their law, and adds up the
@@ -37,18 +52,23 @@ pub struct Straining<T> {
 /// x_p = sum N_I x_I             v_p = sum N_I v_I
 /// ```
 ///
-/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for.
+/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for. Forces and wave
+/// have the same bits whatever is asked for.
 pub fn strain<T: Laned, const D: usize>(
     interior: &mut Interior<D>,
     table: &Table<T, D>,
     (matter, particles): (&Matter<T>, &mut Particles<T, D>),
     straining: Straining<T>,
 ) -> Found<T> {
-    interior.forces.fill(Vector::ZERO);
-    let Straining { body, dt, processor } = straining;
+    let Straining { body, dt, processor, asked } = straining;
     let mut found = Found::NOTHING;
+    // In plane strain a body may have the thickness that plane stress gave it before.
+    let thickness = ColumnStart::<D>::DEFORMATION + deformation_entries(D).len() - 1;
+    let plane = D == 3
+        || matter.thickness == Thickness::Moved
+            && particles.line(thickness).iter().all(|&stretch| stretch == T::ONE);
     let columns = particles.open();
-    let visit = Visit { interior, table, matter, columns, body, dt, found: &mut found };
+    let visit = Visit { interior, table, matter, columns, body, dt, plane, asked, found: &mut found };
     T::run(processor, visit);
     // Cells know particles by their places, which ascend as their numbers do.
     let fault =
@@ -63,6 +83,9 @@ struct Visit<'a, T, const D: usize> {
     columns: Columns<T, D>,
     body: usize,
     dt: T,
+    /// Whether F has a one beyond the plane.
+    plane: bool,
+    asked: Asked,
     found: &'a mut Found<T>,
 }
 
@@ -79,7 +102,11 @@ impl<T: Laned, const D: usize> Work for Visit<'_, T, D> {
     /// One particle at a time on x86-64: laws for several that few processors need would be a tenth of the program.
     #[cfg(all(target_arch = "x86_64", not(portable_lanes)))]
     fn run_anywhere(mut self) {
-        let (constants, form) = (self.constants(), self.interior.form.clone());
+        if self.asked == Asked::State {
+            return;
+        }
+        self.interior.forces.fill(Vector::ZERO);
+        let (constants, form) = (self.constants(true), self.interior.form.clone());
         form.cells.iter().enumerate().for_each(|(number, cell)| self.one_by_one(&constants, (number, cell)));
     }
 }
@@ -91,23 +118,124 @@ struct Constants<V> {
     dt: V,
     /// Whether the law asks for the deformation of the step.
     by_increments: bool,
+    /// Whether forces are asked for.
+    pushes: bool,
 }
 
 impl<T: Laned, const D: usize> Visit<'_, T, D> {
     #[inline(always)]
-    fn constants<V: Lanes<Real = T>>(&self) -> Constants<V> {
+    fn constants<V: Lanes<Real = T>>(&self, pushes: bool) -> Constants<V> {
         Constants {
             material: self.matter.material.map(V::splat),
             per_density: V::splat(T::ONE / self.matter.density),
             dt: V::splat(self.dt),
             by_increments: !matches!(*self.matter.material, Material::NeoHookean(_)),
+            pushes,
         }
     }
 
     #[inline(always)]
     fn cells<V: Lanes<Real = T>>(&mut self) {
-        let constants = self.constants::<V>();
         let form = self.interior.form.clone();
+        if self.asked != Asked::State {
+            self.interior.forces.fill(Vector::ZERO);
+        }
+        let pushes = match (self.elastic(), self.asked) {
+            (None, Asked::State) => return,
+            (None, _) => true,
+            (Some(_), Asked::State) => false,
+            (Some(law), asked) => match self.pull::<V>(&form, &law) {
+                true if asked == Asked::Forces => return,
+                true => false,
+                // Who has the fault is found one by one.
+                false => true,
+            },
+        };
+        self.each::<V>(&form, pushes);
+    }
+
+    /// The law of a body whose particles may stay behind. In single precision, cells side by side would have to share
+    /// one place from which theirs are measured.
+    fn elastic(&self) -> Option<NeoHookean<T>> {
+        match *self.matter.material {
+            Material::NeoHookean(law) if const { size_of::<T>() == size_of::<f64>() } && self.plane => {
+                Some(law)
+            }
+            _ => None,
+        }
+    }
+
+    /// Forces of an elastic body, unless a particle is not sound; whether all are.
+    #[inline(always)]
+    fn pull<V: Lanes<Real = T>>(&mut self, form: &Form<D>, law: &NeoHookean<T>) -> bool {
+        let mut sound = true;
+        // Never otherwise, which compilers see here.
+        if const { size_of::<T>() == size_of::<f64>() } {
+            let density = self.matter.density;
+            let mut fastest = V::Register::ZERO;
+            let table = self.table;
+            if !table.blocks.is_empty() {
+                let whole = Whole::<V::Register, D>::new(form, law, density);
+                let mut places = Rows::places(&self.interior.places);
+                let mut forces = Rows::forces(form.nodes());
+                for block in &table.blocks {
+                    let rows = [&mut places, &mut forces];
+                    sound &= whole.strain((table, block), &form.offsets, rows, &mut fastest);
+                }
+                forces.add_to(&mut self.interior.forces);
+            }
+            let elastic = Elastic::new(law, density);
+            for &number in &table.others {
+                let at = (number as usize, &form.cells[number as usize]);
+                sound &= self.pull_cell::<V>(&elastic, &form.volumes, at, &mut fastest);
+            }
+            if sound {
+                self.take(&fastest.numbers().0[..V::Register::COUNT]);
+            } else {
+                self.interior.forces.fill(Vector::ZERO);
+            }
+        }
+        sound
+    }
+
+    /// Forces of a cell of an elastic body whose particles lie anywhere; whether all are sound.
+    #[inline(always)]
+    fn pull_cell<V: Lanes<Real = T>>(
+        &mut self,
+        elastic: &Elastic<V::Register>,
+        volumes: &[f64],
+        (number, cell): (usize, &Cell),
+        fastest: &mut V::Register,
+    ) -> bool {
+        let (mut pulls, mut sound) = (Matrix::<V>::ZERO, true);
+        let volumes = &volumes[cell.first as usize..(cell.first + cell.count) as usize];
+        for n in 0..V::REGISTERS {
+            let first = n * V::Register::COUNT;
+            if first >= volumes.len() {
+                break;
+            }
+            let mut own = self.deformation::<V::Register>((number, cell, first));
+            if const { D == 2 } {
+                own.0[2][2] = V::Register::ONE;
+            }
+            let volume =
+                V::Register::from_fn(|lane| volumes.get(first + lane).map_or(T::ZERO, |&v| T::of(v)));
+            let (here, all) = elastic.pulls::<D>(own, volume, fastest);
+            sound &= all;
+            for i in 0..D {
+                for a in 0..D {
+                    pulls.0[i][a].put(n, here.0[i][a]);
+                }
+            }
+        }
+        self.scatter(&pulls, (number, cell, 0));
+        sound
+    }
+
+    /// Lets the particles of all cells take their state, and adds up forces if they are asked for.
+    #[inline(always)]
+    fn each<V: Lanes<Real = T>>(&mut self, form: &Form<D>, pushes: bool) {
+        let constants = self.constants::<V>(pushes);
         let (mut copies, mut fastest) = (Copies::EMPTY, V::ZERO);
         for (number, cell) in form.cells.iter().enumerate() {
             let mut index = [0; MOST_LANES];
@@ -121,10 +249,12 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 Members::copied::<V>(&columns, &index[..count], &verbs, &mut copies)
             };
             if self.lanes(&constants, (number, cell, 0), &members, &mut fastest).is_err() {
-                self.one_by_one(&self.constants(), (number, cell));
+                self.one_by_one(&self.constants(pushes), (number, cell));
             }
         }
-        self.take(&fastest.numbers().0[..V::COUNT]);
+        if pushes {
+            self.take(&fastest.numbers().0[..V::COUNT]);
+        }
     }
 
     /// Takes note of squares of the speeds of waves.
@@ -214,9 +344,10 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 }
             }
         }
-        let motion = self.motion::<V>((number, cell, lane));
-        let pulls = self.respond(constants, own, motion, members, fastest)?;
-        self.scatter(&pulls, (number, cell, lane));
+        let pulls = self.respond(constants, own, (number, cell, lane), members, fastest)?;
+        if constants.pushes {
+            self.scatter(&pulls, (number, cell, lane));
+        }
         Ok(())
     }
 
@@ -231,7 +362,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         &mut self,
         constants: &Constants<V>,
         own: Matrix<V>,
-        [place, velocity]: [Vector<V, D>; 2],
+        (number, cell, lane): (usize, &Cell, usize),
         members: &Members<'_, T, D>,
         fastest: &mut V,
     ) -> Result<Matrix<V>, FaultKind> {
@@ -280,6 +411,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         let speed = modulus * constants.per_density * squared_shrinking::<V, D>(&inverse);
         // What is no number is passed over, on all machines: they give the second one then.
         *fastest = speed.max(*fastest);
+        let [place, velocity] = self.motion::<V>((number, cell, lane));
         members.store_vector(ColumnStart::<D>::POSITION, &place);
         members.store_vector(ColumnStart::<D>::VELOCITY, &velocity);
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::SPIN);

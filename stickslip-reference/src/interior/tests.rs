@@ -56,7 +56,7 @@ impl<const D: usize> Alone<D> {
     }
 
     pub fn strain(&mut self, dt: f64) {
-        let straining = Straining { body: 0, dt, processor: Processor::best() };
+        let straining = Straining { body: 0, dt, processor: Processor::best(), asked: Asked::Everything };
         let found = strain(&mut self.interior, &self.table, (&self.matter, &mut self.particles), straining);
         assert!(found.fault.is_none(), "{found:?}");
         self.interior.gather_forces();
@@ -211,4 +211,68 @@ fn a_beam_of_four_cells_swings_on() {
     let mean = |some: &[f64]| some.iter().sum::<f64>() / some.len() as f64;
     let left = mean(&peaks[180..200]) / mean(&peaks[1..21]);
     assert!((left - 1.0).abs() < 0.01, "amplitude after a hundred periods: {left} of {last}");
+}
+
+/// Lets nodes stand where a bent and stretched body has them, and move on.
+fn bend<const D: usize>(alone: &mut Alone<D>) {
+    let bent = |x: Vector<f64, D>| {
+        let last = x[D - 1];
+        Vector::from_fn(|k| {
+            x[k] * (1.0 + 0.1 * k as f64) + 0.2 * last * (x[0] + 0.1 * last) + 0.05 * x[0] * x[1]
+        })
+    };
+    alone.interior.places.iter_mut().for_each(|place| *place = bent(*place));
+    alone.interior.follow();
+}
+
+/// Cells side by side give the forces of particles one by one, whether the body's grid is turned, its faces cut cells,
+/// or rows are longer than lanes; and particles that stayed behind are, once shown, what they are if all is asked for.
+#[test]
+fn forces_are_those_of_particles_one_by_one_and_do_not_depend_on_who_looks() {
+    fn compare<const D: usize>(shape: &Shape, share: f64) {
+        let mut alone = Alone::<D>::new(shape, 0.1, |x| x * 0.3);
+        bend(&mut alone);
+        let whole: u32 = alone.table.blocks.iter().map(|block| block.count).sum();
+        assert!(f64::from(whole) >= share * alone.interior.form.cells.len() as f64, "{whole}");
+        let mut strained = |processor: Processor, asked: &[Asked]| {
+            let mut all = alone.particles.clone();
+            let interior = &mut alone.interior;
+            let mut signal = 0.0;
+            for &asked in asked {
+                let straining = Straining { body: 0, dt: 0.0, processor, asked };
+                let found = strain(interior, &alone.table, (&alone.matter, &mut all), straining);
+                assert!(found.fault.is_none(), "{found:?}");
+                signal = f64::max(signal, found.signal);
+            }
+            let particles: Vec<_> =
+                all.iter().map(|p| (p.position, p.velocity, p.deformation, p.stress)).collect();
+            (interior.forces.clone(), signal, format!("{particles:?}"))
+        };
+        let (one_by_one, slow, _) = strained(Processor::Any, &[Asked::Everything]);
+        let largest = one_by_one.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        for processor in Processor::available() {
+            let (forces, signal, particles) = strained(processor, &[Asked::Everything]);
+            for (force, expected) in forces.iter().zip(&one_by_one) {
+                assert!((*force - *expected).norm() < 1e-13 * largest, "{force:?} {expected:?}");
+            }
+            // A bound, which is another one along other axes.
+            assert!((0.6..1.7).contains(&(signal / slow)), "{signal} {slow}");
+            let unseen = strained(processor, &[Asked::Forces, Asked::State]);
+            assert!((&unseen.0, unseen.1, &unseen.2) == (&forces, signal, &particles));
+        }
+    }
+    let cuboid = |size: [f64; 3]| Shape::Box { min: [0.0; 3], max: size };
+    let turned = |shape: Shape| Shape::Rotated {
+        shape: Box::new(shape),
+        center: [0.1, 0.2, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        angle: 0.4,
+    };
+    compare::<3>(&cuboid([0.5, 0.4, 1.1]), 1.0);
+    compare::<3>(&turned(cuboid([0.5, 0.4, 1.1])), 1.0);
+    compare::<3>(&cuboid([0.53, 0.4, 0.66]), 0.2);
+    compare::<3>(&Shape::Ball { center: [0.0; 3], radius: 0.42 }, 0.1);
+    compare::<2>(&cuboid([0.5, 1.1, 0.0]), 1.0);
+    compare::<2>(&turned(cuboid([0.5, 1.1, 0.0])), 1.0);
+    compare::<2>(&Shape::disk([0.0; 2], 0.42), 0.3);
 }

@@ -455,7 +455,8 @@ impl Watched<'_> {
         let begun = Instant::now();
         let late = || options.max_time.is_some_and(|longest| begun.elapsed() >= longest);
         let stop = || options.stop.load(Ordering::Relaxed) || late();
-        let mut march = March::from(kept.last_step, end).with_retries(kept.pace, scene.health.retries);
+        let mut march =
+            March::from(kept.last_step, end).with_retries(kept.pace, scene.health.retries).unseen();
         let mut stopped = stop() || kept.verdict.stop().is_some();
         let way = loop {
             if stopped && !march.is_done(*simulation) {
@@ -466,6 +467,11 @@ impl Watched<'_> {
                 Ok(None) => break Ok(MarchEnd::Arrived),
                 Err(error) => break Err(error),
             };
+            let saves = checkpoints.due(*simulation);
+            let looks_at = (step, march.pace().part());
+            if saves || recorder.is_due(*simulation) || kept.verdict.is_due(scene, *simulation, looks_at) {
+                simulation.show();
+            }
             let begun = Instant::now();
             let looks = kept.verdict.looks();
             if recorder.is_due(*simulation)
@@ -487,7 +493,7 @@ impl Watched<'_> {
                 let notes = std::mem::take(&mut notes);
                 progress(&Progress { notes, ..kept.clock.progress(*simulation, end) });
             }
-            if recorded.is_ok() && checkpoints.due(*simulation) {
+            if recorded.is_ok() && saves {
                 let begun = Instant::now();
                 recorded =
                     save(*simulation, (recorder, kept, checkpoints, CheckpointForm::Plain), memory.as_ref());
@@ -498,6 +504,7 @@ impl Watched<'_> {
                 .extend(trouble.and_then(|error| kept.verdict.note_checkpoint((scene, *simulation), &error)));
             stopped = recorded.is_err() || stop() || kept.verdict.stop().is_some();
         };
+        simulation.show();
         recorded?;
         let way = way.and_then(|way| {
             let bad = not_finite::in_sums(scene, *simulation);

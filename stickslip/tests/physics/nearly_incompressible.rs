@@ -114,12 +114,17 @@ fn collide(volume_change: &str, (dimension, update, end): (&str, &str, f64)) -> 
 
 #[test]
 fn bodies_that_meet_and_ring_keep_momentum_and_make_no_energy() {
-    for way in [
-        ("plane-strain", "first", 30.0),
-        ("plane-strain", "last", 30.0),
-        ("plane-strain", "modified-last", 30.0),
-        ("3d", "modified-last", 8.0),
-    ] {
+    meet_and_ring(&[("plane-strain", "modified-last", 30.0), ("3d", "modified-last", 8.0)]);
+}
+
+#[test]
+#[ignore = "slow: half a minute"]
+fn they_do_so_by_every_update_of_the_stress() {
+    meet_and_ring(&[("plane-strain", "first", 30.0), ("plane-strain", "last", 30.0)]);
+}
+
+fn meet_and_ring(ways: &[(&str, &str, f64)]) {
+    for &way in ways {
         let [own, averaged] = ["own", "averaged"].map(|volume_change| {
             let collision = collide(volume_change, way);
             let Collision { momentum, angular, energy: [gained, lost] } = collision;

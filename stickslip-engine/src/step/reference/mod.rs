@@ -52,7 +52,7 @@ use stickslip_reference::contact::{
     Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Search, Touch,
     approach, begin, find, follow, parted, press, slip,
 };
-use stickslip_reference::interior::{Interior, Straining, strain};
+use stickslip_reference::interior::{Asked, Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
 use walls::RigidWall;
 
@@ -82,6 +82,8 @@ pub struct ReferenceBody<const D: usize> {
 pub struct References<const D: usize> {
     /// The nodes of each.
     pub nodes: Vec<Interior<D>>,
+    /// Whether particles may be where the nodes were in a step before.
+    pub behind: bool,
     /// What is known of points that touch.
     pub touching: Vec<Memory>,
     /// What each body's part of the layers is.
@@ -305,10 +307,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pierced_reference().map_or(Ok(()), Err)?;
         self.watch.lap("contact", start);
         let start = Instant::now();
-        let found = self.strain_references(dt);
+        let asked = if self.workspace.unseen { Asked::Forces } else { Asked::Everything };
+        let found = self.strain_references(dt, asked);
+        self.state.references.behind = self.workspace.unseen;
         self.watch.lap("stress update", start);
         self.judge(found.iter().copied().fold(Found::NOTHING, Found::and).fault)?;
-        self.judge(self.escaped_reference())?;
+        let escaped = self.escaped_reference();
+        if escaped.is_some() {
+            self.show_references();
+        }
+        self.judge(escaped)?;
         self.workspace.reference_signal = Some(self.fastest_reference(&found));
         Ok(())
     }
@@ -489,8 +497,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         walls.map(rigid).collect()
     }
 
+    /// Lets particles that a step has left behind take what the nodes say.
+    pub(super) fn show_references(&mut self) {
+        if self.state.references.behind {
+            self.strain_references(T::ZERO, Asked::State);
+            self.state.references.behind = false;
+        }
+    }
+
     /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
-    fn strain_references(&mut self, dt: T) -> Vec<Found<T>> {
+    fn strain_references(&mut self, dt: T, asked: Asked) -> Vec<Found<T>> {
         let processor = match self.settings.path {
             ParticleLoop::Lanes(processor) => processor,
             ParticleLoop::OneLane => Processor::Any,
@@ -506,7 +522,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             if here.particles.is_empty() {
                 return;
             }
-            let straining = Straining { body: *body, dt, processor };
+            let straining = Straining { body: *body, dt, processor, asked };
             *found = strain(interior, table, (&here.matter, &mut here.particles), straining);
         });
         found
@@ -596,9 +612,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             if !nodes.places.iter().any(|place| outside(place.space())) {
                 return None;
             }
-            let particles = &self.state.bodies[reference.body].particles;
-            let particle = (0..particles.len()).find(|&i| outside(particles.place(i).0.space()))?;
-            let number = particles.numbers()[particle];
+            let numbers = self.state.bodies[reference.body].particles.numbers();
+            let place = |start: &Vector<f64, D>| nodes.at(&nodes.form.weights(*start), &nodes.places);
+            let mut places = nodes.form.places.iter().take(numbers.len()).map(place);
+            let particle = places.position(|place| outside(place.space()))?;
+            let number = numbers[particle];
             Some(ParticleFault { body: reference.body, particle, number, kind: FaultKind::Escaped })
         })
     }
@@ -626,7 +644,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// The nodes of these bodies as data, and the points that touch. Of several ranks the first knows the forces on
     /// all.
     pub(super) fn saved_nodes(&self) -> (Vec<SavedNodes>, Vec<Memory>) {
-        let References { nodes, touching, layers, accelerations } = &self.state.references;
+        // Particles are saved only when none is behind.
+        let References { nodes, behind: _, touching, layers, accelerations } = &self.state.references;
         let mut saved: Vec<SavedNodes> = (nodes.iter().enumerate())
             .map(|(place, nodes)| SavedNodes {
                 body: self.settings.references[place].body,
@@ -709,7 +728,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// Begins with these nodes.
     pub(super) fn begin_nodes(&mut self, carried: CarriedNodes) {
-        let References { nodes, touching, layers, accelerations } = &mut self.state.references;
+        let References { nodes, behind, touching, layers, accelerations } = &mut self.state.references;
+        *behind = false;
         accelerations.clear();
         layers.resize(nodes.len(), Layers::default());
         for (place, saved) in &carried.nodes {
@@ -774,7 +794,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         if !places.is_empty() {
             // Forces of the stress that this is.
-            self.strain_references(T::ZERO);
+            self.strain_references(T::ZERO, Asked::Everything);
         }
     }
 
@@ -788,6 +808,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             saved.iter().map(|saved| vectors(&saved.accelerations)).collect()
         };
         self.state.references.touching = touching;
+        self.state.references.behind = false;
     }
 }
 

@@ -53,8 +53,13 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 
 impl WeighingTimes {
     /// Whether it is time after so many steps.
+    pub(super) fn are_due(&self, steps: u64) -> bool {
+        steps >= self.next
+    }
+
+    /// The same, and then the next one is another.
     pub(super) fn come(&mut self, steps: u64) -> bool {
-        if steps < self.next {
+        if !self.are_due(steps) {
             return false;
         }
         self.count += 1;

@@ -233,6 +233,18 @@ impl RunChecks {
         })
     }
 
+    /// Whether what a run looks at is due after a step of this length [s], by steps of this part of the stable one.
+    pub(super) fn is_due(&self, scene: &Scene, view: &dyn View, (step, part): (f64, f64)) -> bool {
+        self.weighing.are_due(view.steps()) || self.checks_are_due(scene, view, (step, part))
+    }
+
+    fn checks_are_due(&self, scene: &Scene, view: &dyn View, (step, part): (f64, f64)) -> bool {
+        // Where steps are that small simulated time hardly goes on, and the next look by it is far.
+        let bound = scene.health_bound(HealthCheck::SmallStep) * self.first_step;
+        let small = || step > 0.0 && step < bound && part * view.stable_step() < bound;
+        view.steps() >= self.next_step && (view.time() >= self.next_time || small())
+    }
+
     /// What is new, if it is time to look after a step of this length [s], where steps may be this part of the stable
     /// one.
     pub(super) fn look(
@@ -247,10 +259,7 @@ impl RunChecks {
             self.balance.weigh(&ledger, least);
             self.cuttings.look(scene, simulation, &self.negligible);
         }
-        // Where steps are that small simulated time hardly goes on, and the next look by it is far.
-        let bound = scene.health_bound(HealthCheck::SmallStep) * self.first_step;
-        let small = step > 0.0 && step < bound && part * simulation.stable_step() < bound;
-        if simulation.steps() < self.next_step || (simulation.time() < self.next_time && !small) {
+        if !self.checks_are_due(scene, simulation, (step, part)) {
             return Vec::new();
         }
         // At the times of tables, which sum up all particles anyway.
