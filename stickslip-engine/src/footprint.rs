@@ -1,17 +1,29 @@
 //! What a scene costs in memory.
 
-use crate::check::Footprint;
+use crate::body::BodyHere;
+use crate::check::{BodySize, Footprint, OwnGrid};
 use crate::geometry::Bounds;
 use crate::grid::Node;
 use crate::particles::Particles;
-use crate::scene::{Precision, Scene};
-use crate::step::{heated_bodies, own_columns, particles_around};
-use crate::tensor::Real;
+use crate::scene::{Body, Precision, Scene};
+use crate::step::{ReferenceBody, heated_bodies, own_columns, particles_around};
+use crate::tensor::{Real, Vector};
+use std::collections::HashMap;
+use stickslip_reference::cells::Table;
+use stickslip_reference::contact::{Memory, Neighbours, Touch};
+use stickslip_reference::interior::Interior;
+use stickslip_reference::surface::SurfacePoint;
 
 /// Each particle's place in the order of blocks and cells, of which there are two: one while the next is made [bytes].
 const ORDER_BYTES: usize = 2 * size_of::<u32>();
 /// Nodes per cell that particles fill: blocks are covered whole, with those that a body's rim reaches.
 const NODES_PER_CELL: f64 = 4.0;
+/// What a simulation takes whatever is in it: rooms of threads, and of sums [bytes].
+const ITSELF: f64 = 2e5;
+/// Lists of points that touch: those of each body, and of all.
+const TOUCHES: usize = 2;
+/// Lists of what is known of these: of this step and of the one before.
+const MEMORIES: usize = 2;
 
 /// What this engine takes.
 #[derive(Clone, Copy, Debug)]
@@ -22,39 +34,90 @@ impl Footprint for OfEngine {
         particles_around(scene, body, boxes)
     }
 
-    fn memory(&self, scene: &Scene, particles: &[usize]) -> f64 {
-        let [held, grid] = cost(scene, particles);
+    fn memory(&self, scene: &Scene, bodies: &[BodySize]) -> f64 {
+        let Cost { copied, other } = cost(scene, bodies);
         // With the copy of the state before each step, where steps may be taken again.
         let copies = if scene.health.retries > 0 { 2.0 } else { 1.0 };
-        copies * held + grid + (ORDER_BYTES * particles.iter().sum::<usize>()) as f64
+        copies * copied + other + ITSELF
     }
 
-    fn copy(&self, scene: &Scene, particles: &[usize]) -> f64 {
-        cost(scene, particles)[0]
+    fn copy(&self, scene: &Scene, bodies: &[BodySize]) -> f64 {
+        cost(scene, bodies).copied
     }
 }
 
-fn cost(scene: &Scene, particles: &[usize]) -> [f64; 2] {
+/// Memory of bodies [bytes].
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    /// Of what moves, which is copied for checkpoints.
+    copied: f64,
+    /// Of what is constant, or made anew.
+    other: f64,
+}
+
+impl Cost {
+    fn and(self, more: Cost) -> Cost {
+        Cost { copied: self.copied + more.copied, other: self.other + more.other }
+    }
+}
+
+fn cost(scene: &Scene, bodies: &[BodySize]) -> Cost {
     match (scene.dimension.axes(), scene.precision) {
-        (2, Precision::Double) => cost_of::<f64, 2>(scene, particles),
-        (2, Precision::Single) => cost_of::<f32, 2>(scene, particles),
-        (_, Precision::Double) => cost_of::<f64, 3>(scene, particles),
-        (_, Precision::Single) => cost_of::<f32, 3>(scene, particles),
+        (2, Precision::Double) => cost_of::<f64, 2>(scene, bodies),
+        (2, Precision::Single) => cost_of::<f32, 2>(scene, bodies),
+        (_, Precision::Double) => cost_of::<f64, 3>(scene, bodies),
+        (_, Precision::Single) => cost_of::<f32, 3>(scene, bodies),
     }
 }
 
-/// Bytes of the particles, and of the nodes around them.
-fn cost_of<T: Real, const D: usize>(scene: &Scene, particles: &[usize]) -> [f64; 2] {
-    let node = size_of::<Node<T, D>>() as f64;
+fn cost_of<T: Real, const D: usize>(scene: &Scene, sizes: &[BodySize]) -> Cost {
     let heated = heated_bodies(scene);
-    let of_body = |(number, (body, &count)): (usize, (&crate::scene::Body, &usize))| {
-        let own = own_columns(scene, body, heated.contains(&number));
-        let per_cell = (scene.discretization.cell / scene.lattice(body).spacing).powi(D as i32);
-        let themselves = Particles::<T, D>::bytes_of(count, own) as f64;
-        [themselves, node * NODES_PER_CELL * count as f64 / per_cell]
+    let of_body = |(number, (body, size)): (usize, (&Body, &BodySize))| {
+        let particles = Cost {
+            copied: Particles::<T, D>::bytes_of(
+                size.particles,
+                own_columns(scene, body, heated.contains(&number)),
+            ) as f64,
+            other: 0.0,
+        };
+        particles.and(match &size.grid {
+            Some(grid) => own_grid::<T, D>(grid),
+            None => common_grid::<T, D>(scene, body, size.particles),
+        })
     };
-    let of_bodies = scene.bodies.iter().zip(particles).enumerate().map(of_body);
-    of_bodies.fold([0.0; 2], |[held, grid], [more, nodes]| [held + more, grid + nodes])
+    let of_bodies = scene.bodies.iter().zip(sizes).enumerate().map(of_body);
+    let grids: Vec<OwnGrid> = sizes.iter().filter_map(|size| size.grid).collect();
+    of_bodies.fold(tables::<T, D>(&grids), Cost::and)
+}
+
+/// What particles on the common grid take there.
+fn common_grid<T: Real, const D: usize>(scene: &Scene, body: &Body, particles: usize) -> Cost {
+    let per_cell = (scene.discretization.cell / scene.lattice(body).spacing).powi(D as i32);
+    let nodes = NODES_PER_CELL * particles as f64 / per_cell;
+    let order = ORDER_BYTES * particles;
+    Cost { copied: 0.0, other: nodes * size_of::<Node<T, D>>() as f64 + order as f64 }
+}
+
+/// What a body on a grid of its own takes beside its particles, with its part of contact.
+fn own_grid<T: Real, const D: usize>(grid: &OwnGrid) -> Cost {
+    let &OwnGrid { nodes, bytes, points, near, .. } = grid;
+    // Masses; places, velocities and forces.
+    let of_nodes = nodes * (size_of::<f64>() + 3 * size_of::<Vector<f64, D>>());
+    let itself = size_of::<BodyHere<T, D>>() + size_of::<Interior<D>>() + size_of::<ReferenceBody<D>>();
+    let surface = points * size_of::<SurfacePoint<D>>();
+    let contact = near * (TOUCHES * size_of::<Touch<D>>() + (MEMORIES - 1) * size_of::<Memory>());
+    Cost {
+        copied: (of_nodes + near * size_of::<Memory>()) as f64,
+        other: (itself + bytes + surface + contact + Neighbours::<D>::bytes_of(points, near)) as f64,
+    }
+}
+
+/// What the functions at the particles of cells take: bodies that are alike share them.
+fn tables<T: Real, const D: usize>(grids: &[OwnGrid]) -> Cost {
+    let kinds: HashMap<u64, usize> =
+        grids.iter().map(|grid| (grid.kinds.likeness, grid.kinds.count)).collect();
+    let cells = grids.iter().map(|grid| grid.cells).sum();
+    Cost { copied: 0.0, other: Table::<T, D>::bytes_of(kinds.into_values().sum(), cells) as f64 }
 }
 
 #[cfg(test)]
@@ -102,6 +165,8 @@ mod tests {
         let above = of_floor(&scene("", 2.97));
         assert!((above as f64 / found as f64 - 1.0).abs() < 0.2, "{above} {found}");
         assert_eq!(of_floor(&scene("rigid = {}", 2.97)), 0);
+        // Bodies on grids of their own touch its shape.
+        assert_eq!(of_floor(&scene("interior = \"reference\"", 2.97)), 0);
     }
 
     /// At least what the particles hold: 30 columns of 8 bytes, and numbers.
@@ -120,7 +185,8 @@ mod tests {
         let block = &saved.bodies[0];
         let bytes =
             block.columns.iter().map(|column| column.bytes.len()).sum::<usize>() + 4 * block.numbers.len();
-        let share = OfEngine.copy(&scene, &[block.numbers.len(), 0]) / bytes as f64;
+        let sizes = [block.numbers.len(), 0].map(|particles| BodySize { particles, grid: None });
+        let share = OfEngine.copy(&scene, &sizes) / bytes as f64;
         assert!((1.0..1.1).contains(&share), "{share}");
     }
 }

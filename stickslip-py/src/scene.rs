@@ -103,7 +103,8 @@ impl ReadScene {
         let pool = pool(None)?;
         let Loaded { scene, source, .. } = &self.loaded;
         let report = py.detach(|| pool.install(|| stickslip::check::report(scene)));
-        let report = report.map_err(|problem| errors::of_problem(py, &self.loaded, problem))?;
+        let mut report = report.map_err(|problem| errors::of_problem(py, &self.loaded, problem))?;
+        report.memory += stickslip::run::memory(&report);
         let report = report.in_memory(stickslip::check::free_memory()).placed(source);
         let mut text = report.to_string();
         if scene.start.is_some() {

@@ -1,6 +1,7 @@
 //! The functions at the particles of each cell, laid out for several lanes.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 use stickslip_kernels::lanes::{MOST_LANES, Numbers};
 use stickslip_mechanics::geometry::form::spline::WIDTH;
@@ -45,14 +46,22 @@ pub struct Table<T, const D: usize> {
     volumes: Arc<Vec<Volumes<T>>>,
 }
 
-/// What tells cells apart: the places of their parts, the axes of their grid, and their side, to a billionth.
+/// What tells cells apart: the places of their parts, the axes of their grid, and their side.
 type Key = Vec<i64>;
 
-/// Entries of cells, and where those begin that are known.
-struct Entries<T, const D: usize> {
-    /// Of each node of a cell its value [-] and its slopes along the axes of space [1/m], particle by particle.
-    entries: Vec<Numbers<T>>,
+/// Cells of which no two are alike.
+struct Kinds<'a, const D: usize> {
     known: HashMap<Key, u32>,
+    firsts: Vec<(&'a Form<D>, &'a Cell)>,
+}
+
+/// How many cells of a grid differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CellKinds {
+    /// How many there are of which no two are alike.
+    pub count: usize,
+    /// The same number for grids that have the same cells.
+    pub likeness: u64,
 }
 
 /// Entries of a node: its value and its slopes.
@@ -63,10 +72,15 @@ const fn entries(dimension: usize) -> usize {
 impl<T: Real, const D: usize> Table<T, D> {
     /// Of the grids of some bodies, one for each.
     pub fn of_all<'a>(forms: impl Iterator<Item = &'a Form<D>>) -> Vec<Self> {
-        let mut all = Entries { entries: Vec::new(), known: HashMap::new() };
+        let mut kinds = Kinds { known: HashMap::new(), firsts: Vec::new() };
         let mut lists = VolumeLists { lists: Vec::new(), known: HashMap::new() };
-        let of_bodies: Vec<_> = forms.map(|form| (all.starts(form), lists.blocks(form))).collect();
-        let (entries, volumes) = (Arc::new(all.entries), Arc::new(lists.lists));
+        let of_bodies: Vec<_> = forms.map(|form| (kinds.starts::<T>(form), lists.blocks(form))).collect();
+        // Made in the memory that they need: lists that grow take twice of that.
+        let mut entries = vec![Numbers::ZERO; Self::OF_CELL * kinds.firsts.len()];
+        for (entries, (form, cell)) in entries.chunks_exact_mut(Self::OF_CELL).zip(kinds.firsts) {
+            fill(entries, form, &form.places[cell.first as usize..][..cell.count as usize]);
+        }
+        let (entries, volumes) = (Arc::new(entries), Arc::new(lists.lists));
         let table = |(starts, (blocks, others))| Table {
             starts,
             entries: entries.clone(),
@@ -85,7 +99,7 @@ impl<T: Real, const D: usize> Table<T, D> {
     /// Of a cell: the values and slopes of its nodes, [`Table::ENTRIES`] each.
     #[inline(always)]
     pub fn of(&self, cell: usize) -> &[Numbers<T>] {
-        &self.entries[self.starts[cell] as usize..][..Self::ENTRIES * Form::<D>::NODES]
+        &self.entries[self.starts[cell] as usize..][..Self::OF_CELL]
     }
 
     /// Volumes of the particles of a block.
@@ -96,46 +110,80 @@ impl<T: Real, const D: usize> Table<T, D> {
 
     /// Entries of a node: its value and its slopes.
     pub const ENTRIES: usize = entries(D);
+    /// Entries of a cell.
+    const OF_CELL: usize = Self::ENTRIES * Form::<D>::NODES;
+
+    /// Memory that the tables of so many kinds of cells take, of so many cells in all [bytes].
+    pub const fn bytes_of(kinds: usize, cells: usize) -> usize {
+        kinds * Self::OF_CELL * size_of::<Numbers<T>>() + cells * (size_of::<u32>() + size_of::<Block>())
+    }
+
+    /// Memory of the tables that share one list of entries [bytes].
+    pub fn bytes_of_all(tables: &[Self]) -> usize {
+        let own = |table: &Self| {
+            let numbers = table.starts.capacity() + table.others.capacity();
+            numbers * size_of::<u32>() + table.blocks.capacity() * size_of::<Block>()
+        };
+        // Beside these, a few lists of volumes.
+        let entries = tables.first().map_or(0, |table| table.entries.capacity() * size_of::<Numbers<T>>());
+        entries + tables.iter().map(own).sum::<usize>()
+    }
 }
 
-impl<T: Real, const D: usize> Entries<T, D> {
+impl<'a, const D: usize> Kinds<'a, D> {
     /// Where the entries of the cells of a grid begin.
-    fn starts(&mut self, form: &Form<D>) -> Vec<u32> {
-        // Round-off tells no cells apart.
-        let rounded = |x: f64| (x * 1e9).round() as i64;
-        let axes = form.frame.axes.iter().flat_map(|axis| axis.0.map(rounded));
-        let grid: Key = axes.chain([form.cell.to_bits() as i64]).collect();
-        let start = |cell: &Cell| {
-            let places = &form.places[cell.first as usize..][..cell.count as usize];
-            let within =
-                |place: &Vector<f64, D>| form.weights(*place).axes.map(|axis| rounded(axis.slope[WIDTH - 1]));
-            let key: Key = grid.iter().copied().chain(places.iter().flat_map(within)).collect();
-            if let Some(start) = self.known.get(&key) {
-                return *start;
-            }
-            let start = self.add(form, places);
-            self.known.insert(key, start);
-            start
+    fn starts<T: Real>(&mut self, form: &'a Form<D>) -> Vec<u32> {
+        let start = |cell: &'a Cell| {
+            let next = (Table::<T, D>::OF_CELL * self.firsts.len()) as u32;
+            *self.known.entry(key(form, cell, BILLIONTH)).or_insert_with(|| {
+                self.firsts.push((form, cell));
+                next
+            })
         };
         form.cells.iter().map(start).collect()
     }
+}
 
-    fn add(&mut self, form: &Form<D>, places: &[Vector<f64, D>]) -> u32 {
-        let start = self.entries.len();
-        self.entries.resize(start + entries(D) * Form::<D>::NODES, Numbers::ZERO);
-        for lane in 0..MOST_LANES {
-            // Lanes beyond repeat the first.
-            let weights = form.weights(places[if lane < places.len() { lane } else { 0 }]);
-            weights.each(|k, value, slope| {
-                let node = &mut self.entries[start + k * entries(D)..][..entries(D)];
-                node[0].0[lane] = T::of(value);
-                let slope = form.frame.turned(slope);
-                for a in 0..D {
-                    node[1 + a].0[lane] = T::of(slope[a] / form.cell);
-                }
-            });
+impl CellKinds {
+    /// Those of a grid.
+    pub fn of<const D: usize>(form: &Form<D>) -> Self {
+        let (mut kinds, mut likeness) = (HashSet::new(), DefaultHasher::new());
+        for cell in &form.cells {
+            // Grids that lie elsewhere differ by round-off, of which among so many cells some would be told apart.
+            let key = key(form, cell, MILLIONTH);
+            key.hash(&mut likeness);
+            kinds.insert(key);
         }
-        start as u32
+        CellKinds { count: kinds.len(), likeness: likeness.finish() }
+    }
+}
+
+/// Parts of a cell by which the places of its parts are told apart: not by round-off.
+const BILLIONTH: f64 = 1e9;
+const MILLIONTH: f64 = 1e6;
+
+fn key<const D: usize>(form: &Form<D>, cell: &Cell, parts: f64) -> Key {
+    let rounded = |x: f64| (x * parts).round() as i64;
+    let places = &form.places[cell.first as usize..][..cell.count as usize];
+    let axes = form.frame.axes.iter().flat_map(|axis| axis.0.map(rounded));
+    let within =
+        |place: &Vector<f64, D>| form.weights(*place).axes.map(|axis| rounded(axis.slope[WIDTH - 1]));
+    axes.chain([form.cell.to_bits() as i64]).chain(places.iter().flat_map(within)).collect()
+}
+
+/// Writes the values and slopes of the nodes of a cell at its particles.
+fn fill<T: Real, const D: usize>(all: &mut [Numbers<T>], form: &Form<D>, places: &[Vector<f64, D>]) {
+    for lane in 0..MOST_LANES {
+        // Lanes beyond repeat the first.
+        let weights = form.weights(places[if lane < places.len() { lane } else { 0 }]);
+        weights.each(|k, value, slope| {
+            let node = &mut all[k * entries(D)..][..entries(D)];
+            node[0].0[lane] = T::of(value);
+            let slope = form.frame.turned(slope);
+            for a in 0..D {
+                node[1 + a].0[lane] = T::of(slope[a] / form.cell);
+            }
+        });
     }
 }
 
@@ -196,4 +244,27 @@ fn at_sites<const D: usize>(form: &Form<D>, cell: &Cell) -> Option<[f64; SITES]>
         volumes[site] = form.volumes[particle];
     }
     Some(volumes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stickslip_mechanics::geometry::Shape;
+    use stickslip_mechanics::geometry::form::HeldFaces;
+
+    /// Two equal disks and a larger one: a cell that lies inside of both sizes counts for each.
+    #[test]
+    fn tables_take_what_the_kinds_of_cells_tell() {
+        let disk = |x: f64, radius: f64| {
+            Form::<2>::new(&Shape::disk([x, 0.0], radius), 0.125, HeldFaces::default()).expect("it is thick")
+        };
+        let forms = [disk(0.0, 0.375), disk(1.0, 0.375), disk(3.0, 0.5)];
+        let kinds = forms.each_ref().map(CellKinds::of);
+        assert_eq!(kinds[0], kinds[1]);
+        assert_ne!(kinds[0].likeness, kinds[2].likeness);
+        let cells = forms.iter().map(|form| form.cells.len()).sum();
+        let told = Table::<f64, 2>::bytes_of(kinds[0].count + kinds[2].count, cells);
+        let held = Table::bytes_of_all(&Table::<f64, 2>::of_all(forms.iter()));
+        assert!(held <= told && told < held + held / 10, "{told} {held}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Points of a body's surface, each for a piece of it.
 
-use stickslip_mechanics::geometry::form::{Form, Weights};
+use stickslip_mechanics::geometry::form::{Form, HeldFaces, Weights};
 use stickslip_mechanics::geometry::{self, Bounds, Shape};
 use stickslip_mechanics::tensor::Vector;
 
@@ -20,21 +20,28 @@ pub struct SurfacePoint<const D: usize> {
 /// Distance of neighbouring points over the cell.
 pub const SPACING: f64 = 0.5;
 
-/// Points of the surface of a shape with this grid: a part on a face that holds the body is none.
+/// Points of the surface of a shape with this grid.
 pub fn points<const D: usize>(shape: &Shape, form: &Form<D>) -> Vec<SurfacePoint<D>> {
-    let bounds = shape.bounds(D).unwrap_or(Bounds::EVERYTHING);
-    let all = shape.surface(SPACING * form.cell, D, &bounds).into_iter();
-    let is_free =
-        |point: &geometry::SurfacePoint| !form.faces.hold((point.position, point.normal), form.cell);
-    all.filter(is_free)
-        .map(|point| {
-            let place = Vector::of(point.position);
-            SurfacePoint {
-                place,
-                normal: Vector::of(point.normal),
-                area: point.area,
-                weights: form.weights(place),
-            }
-        })
-        .collect()
+    let point = |point: &geometry::SurfacePoint| {
+        let place = Vector::of(point.position);
+        SurfacePoint {
+            place,
+            normal: Vector::of(point.normal),
+            area: point.area,
+            weights: form.weights(place),
+        }
+    };
+    free_points(shape, (form.cell, &form.faces), D).iter().map(point).collect()
+}
+
+/// Where these are, for cells of this side [m]: a part on a face that holds the body is none.
+pub fn free_points(
+    shape: &Shape,
+    (cell, faces): (f64, &HeldFaces),
+    dimension: usize,
+) -> Vec<geometry::SurfacePoint> {
+    let bounds = shape.bounds(dimension).unwrap_or(Bounds::EVERYTHING);
+    let mut points = shape.surface(SPACING * cell, dimension, &bounds);
+    points.retain(|point| !faces.hold((point.position, point.normal), cell));
+    points
 }

@@ -336,6 +336,8 @@ impl How {
         let display = Display::new(scene.time.end, form);
         let outcome = make(scene, &mut *simulation, &options, &mut |progress| display.show(progress));
         display.finish();
+        // Pictures take as much memory again.
+        drop(simulation);
         let summary = match outcome {
             Ok(summary) => summary,
             Err(error @ RunError::Folder(_)) => return Err(Failure::input(error)),

@@ -71,7 +71,7 @@ impl JobRunner {
                 None => needs.push(Need {
                     job: number,
                     work: report.particles as f64 * report.steps as f64,
-                    memory: report.memory,
+                    memory: report.memory + stickslip::run::memory(&report),
                 }),
             }
         }

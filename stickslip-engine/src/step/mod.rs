@@ -60,7 +60,7 @@ pub(crate) use build::{Shareable, build_empty, build_share};
 pub use build::{build, build_among, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
-pub(crate) use reference::SavedNodes;
+pub(crate) use reference::{ReferenceBody, SavedNodes};
 pub(crate) use relax::RelaxationProgress;
 pub(crate) use unbounded::particles_around;
 pub(crate) use walls::WallSums;

@@ -113,7 +113,18 @@ fn is_ahead<const D: usize>(touch: &Touch<D>) -> bool {
     touch.gap >= 0.0 && touch.memory.age == 0.0
 }
 
+/// Points that are listed as neighbours, over those so near partners that they are looked at in every step: they lie
+/// up to three times as far away.
+const LISTED_OVER_NEAR: usize = 3;
+
 impl<const D: usize> Neighbours<D> {
+    /// Memory that a search among so many points of surfaces takes at most, of which so many are near partners [bytes]:
+    /// their places, the cells that they are looked up in, twice as these lists are joined, and those found.
+    pub const fn bytes_of(points: usize, near: usize) -> usize {
+        let found = 2 * size_of::<Close>() + size_of::<Pair<D>>();
+        points * (size_of::<Vector<f64, D>>() + 2 * size_of::<Entry<D>>()) + LISTED_OVER_NEAR * near * found
+    }
+
     /// Takes note of how bodies move in a step of `dt` [s].
     pub fn moved(&mut self, (bodies, obstacles): (&[Deforming<'_, D>], &[&dyn Obstacle]), dt: f64) {
         for (moved, body) in self.moved.iter_mut().zip(bodies) {

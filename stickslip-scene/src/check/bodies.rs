@@ -1,7 +1,8 @@
 //! Bodies as their particles show them: how many, how large, and whether the domain holds them.
 
+use super::own_grid::{OwnGrid, filled};
 use super::table::short;
-use crate::geometry::{self, Bounds, ParticleSite, Shape};
+use crate::geometry::{self, Arrangement, Bounds, ParticleSite, Shape};
 use crate::scene::{Face, Problem, Scene};
 use rayon::prelude::*;
 
@@ -27,6 +28,8 @@ pub(super) struct FillingExtent {
     pub centers: Bounds,
     /// Centre of mass, of a body without bounds the point about which it turns [m].
     pub center: [f64; 3],
+    /// Its grid, if it has one of its own, without points of its surface.
+    pub grid: Option<OwnGrid>,
 }
 
 impl FillingExtent {
@@ -38,6 +41,7 @@ impl FillingExtent {
             bounds: Bounds::EVERYTHING,
             centers: Bounds::EVERYTHING,
             center,
+            grid: None,
         }
     }
 }
@@ -87,11 +91,19 @@ fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
         bounds: Bounds::EMPTY,
         centers: Bounds::EMPTY,
         center: [0.0; 3],
+        grid: None,
     };
     let (mut moment, mut whole) = ([0.0; 3], 0.0);
     let density = scene.materials[body.material].density;
     // Shapes without bounds are refused before.
-    let Some(all) = geometry::sites(&body.shape, &lattice, scene.arrangement(body)) else {
+    let all: Option<Box<dyn Iterator<Item = ParticleSite>>> = match scene.arrangement(body) {
+        Arrangement::Parts(faces) => filled(scene, body, faces).map(|(sites, grid)| {
+            extent.grid = Some(grid);
+            Box::new(sites.into_iter()) as _
+        }),
+        arrangement => geometry::sites(&body.shape, &lattice, arrangement),
+    };
+    let Some(all) = all else {
         return Err(match bounds.is_empty() {
             true => no_particles(scene, i, &bounds),
             false => Problem {

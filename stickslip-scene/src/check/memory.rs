@@ -1,26 +1,37 @@
 //! How much memory a run takes, and whether a machine has it.
 
 use super::bodies::FillingExtent;
+use super::own_grid::OwnGrid;
 use super::table::{bytes, short};
 use super::warning::Warning;
 use crate::geometry::Bounds;
-use crate::scene::Scene;
+use crate::scene::{Interior, Scene};
 use crate::tensor::Vector;
+
+/// How much there is of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodySize {
+    /// Number of particles.
+    pub particles: usize,
+    /// Its grid, if it has one of its own.
+    pub grid: Option<OwnGrid>,
+}
 
 /// What only the engine that runs a scene knows of its cost.
 pub trait Footprint {
     /// Particles that a rigid body without bounds has in its pose at the start around others that fill these boxes.
     fn particles_around(&self, scene: &Scene, body: usize, boxes: &[Bounds]) -> usize;
 
-    /// Memory of particles and grid [B]; `particles` counts those of each body.
-    fn memory(&self, scene: &Scene, particles: &[usize]) -> f64;
+    /// Memory of bodies of these sizes and of the grid [B].
+    fn memory(&self, scene: &Scene, bodies: &[BodySize]) -> f64;
 
-    /// Memory of the copy of the particles that there is while a checkpoint is written [B].
-    fn copy(&self, scene: &Scene, particles: &[usize]) -> f64;
+    /// Memory of the copy of the bodies that there is while a checkpoint is written [B].
+    fn copy(&self, scene: &Scene, bodies: &[BodySize]) -> f64;
 }
 
-/// Particles of a rigid body without bounds around all deformable bodies, or 0 for one with bounds. Those that are not
-/// near it count as if they had been moved straight to its surface, as they will have fallen or flown.
+/// Particles of a rigid body without bounds around all that deform on the common grid, or 0 for one with bounds. Those
+/// that are not near it count as if they had been moved straight to its surface, as they will have fallen or flown.
+/// Bodies on grids of their own touch its shape, not particles.
 pub(super) fn particles_near_others(
     footprint: &dyn Footprint,
     (scene, extents): (&Scene, &[FillingExtent]),
@@ -29,7 +40,8 @@ pub(super) fn particles_near_others(
     if extents[body].bounds.is_finite() {
         return 0;
     }
-    let others = (0..scene.bodies.len()).filter(|&i| !scene.bodies[i].is_rigid()).map(|i| extents[i].bounds);
+    let is_other = |&i: &usize| !scene.bodies[i].is_rigid() && scene.interior(i) == Interior::Grid;
+    let others = (0..scene.bodies.len()).filter(is_other).map(|i| extents[i].bounds);
     let boxes: Vec<_> = others.map(|bounds| at_surface(scene, body, bounds)).collect();
     footprint.particles_around(scene, body, &boxes)
 }

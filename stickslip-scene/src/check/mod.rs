@@ -7,6 +7,7 @@ mod accuracy;
 mod bodies;
 mod contact;
 mod dead_keys;
+mod effort;
 mod flat;
 mod hertz;
 mod joint_freedom;
@@ -18,6 +19,7 @@ mod measurements;
 mod memory;
 mod neighbours;
 mod overlap;
+mod own_grid;
 mod penetration;
 mod periodic;
 mod precision;
@@ -40,10 +42,12 @@ mod warning;
 
 pub use accuracy::Errors;
 pub use contact::{ContactEstimate, ContactResolution};
+pub use effort::{OwnGridWork, Work};
 pub use flat::lies_flat;
 pub use hertz::{Hertz, HertzPatch};
 pub use loads::LoadReport;
-pub use memory::Footprint;
+pub use memory::{BodySize, Footprint};
+pub use own_grid::OwnGrid;
 pub use press_fit::{Interference, interferences};
 pub(crate) use reference::choose_interior;
 pub use report::{BodyReport, MachineSpeed, MaterialReport, Report, report};
@@ -102,11 +106,11 @@ mod tests {
         fn particles_around(&self, _scene: &Scene, _body: usize, _boxes: &[Bounds]) -> usize {
             0
         }
-        fn memory(&self, _scene: &Scene, particles: &[usize]) -> f64 {
-            300.0 * particles.iter().sum::<usize>() as f64
+        fn memory(&self, _scene: &Scene, bodies: &[BodySize]) -> f64 {
+            300.0 * bodies.iter().map(|body| body.particles).sum::<usize>() as f64
         }
-        fn copy(&self, _scene: &Scene, particles: &[usize]) -> f64 {
-            200.0 * particles.iter().sum::<usize>() as f64
+        fn copy(&self, _scene: &Scene, bodies: &[BodySize]) -> f64 {
+            200.0 * bodies.iter().map(|body| body.particles).sum::<usize>() as f64
         }
     }
 

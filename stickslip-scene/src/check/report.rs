@@ -2,9 +2,11 @@
 
 use super::bodies::{FillingExtent, smallest_extent};
 use super::contact::{ContactEstimate, ContactResolution, Estimates, estimates, starting_velocity};
+use super::effort::{OwnGridWork, own_grid_work};
 use super::loads::{self, LoadReport};
-use super::memory::Footprint;
+use super::memory::{BodySize, Footprint};
 use super::neighbours::pairs_within;
+use super::own_grid::own_grids;
 use super::rules::RuleReport;
 use super::table::short;
 use super::warning::{NOT_RESOLVED, Warning, and_more, few};
@@ -59,9 +61,12 @@ pub struct Report {
     pub rigid_contacts: usize,
     /// What these cost in a step, in particles.
     pub contacts_as_particles: f64,
-    /// Memory of particles and grid, estimated [bytes].
+    /// What bodies on grids of their own take, if there are some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_grids: Option<OwnGridWork>,
+    /// Memory of bodies and grids, estimated [bytes].
     pub memory: f64,
-    /// Memory beside it while a checkpoint is written: a copy of the particles, estimated [bytes].
+    /// Memory beside it while a checkpoint is written: a copy of the bodies, estimated [bytes].
     pub checkpoint_memory: f64,
     /// Simulated time at the end [s].
     pub end: f64,
@@ -124,6 +129,9 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
     let near_others = |body| memory::particles_near_others(footprint, (scene, &extents), body);
     let counts: Vec<_> =
         (extents.iter().enumerate()).map(|(body, extent)| extent.particles + near_others(body)).collect();
+    let sizes: Vec<BodySize> = (counts.iter().zip(own_grids(scene, &extents)))
+        .map(|(&particles, grid)| BodySize { particles, grid })
+        .collect();
     let boxes: Vec<_> = extents.iter().map(|extent| extent.bounds).collect();
     let time_step = time_step(scene, &extents);
     let Estimates { found: contacts, unknown: contacts_unknown } = estimates(scene, &extents);
@@ -144,8 +152,9 @@ pub fn report(scene: &Scene, footprint: &dyn Footprint) -> Result<Report, Proble
         particles: counts.iter().sum(),
         rigid_contacts: places.len(),
         contacts_as_particles: places.iter().sum(),
-        memory: footprint.memory(scene, &counts),
-        checkpoint_memory: footprint.copy(scene, &counts),
+        own_grids: own_grid_work(scene, &sizes, (time_step, fastest(scene, &extents))),
+        memory: footprint.memory(scene, &sizes),
+        checkpoint_memory: footprint.copy(scene, &sizes),
         end: scene.time.end,
         time_step,
         // A last step that is only round-off is none.
@@ -190,10 +199,21 @@ impl Report {
         let rate = machine.particle_steps_per_second;
         // Contacts are solved for by one core.
         let contacts = self.contacts_as_particles / rate;
-        let gridless = self.loads.is_empty() && self.bodies.iter().all(|body| body.rigid);
-        let particles = self.particles as f64 * if gridless { WITHOUT_GRID } else { 1.0 };
-        let a_step = contacts + particles / (rate * machine.cores as f64);
-        Report { machine, wall_time: a_step * self.steps as f64, ..self }
+        let own = self.own_grids.unwrap_or_default();
+        let nothing_deforms = self.loads.is_empty() && self.bodies.iter().all(|body| body.rigid);
+        let each = match (nothing_deforms || own.is_all, self.dimension.is_plane()) {
+            (true, _) => WITHOUT_GRID,
+            (false, true) => IN_PLANE,
+            (false, false) => 1.0,
+        };
+        let particles = (self.particles - own.particles) as f64 * each;
+        let a_step = contacts + particles / (rate * machine.cores as f64) + own.step.seconds(&machine);
+        Report { machine, wall_time: own.start.seconds(&machine) + a_step * self.steps as f64, ..self }
+    }
+
+    /// The part of the expected wall time before the first step [s].
+    pub fn start_time(&self) -> f64 {
+        self.own_grids.map_or(0.0, |own| own.start.seconds(&self.machine))
     }
 
     /// The same where so much memory is available [bytes]: with a warning if the run does not fit.
@@ -244,8 +264,10 @@ fn warnings(
 const PARTICLES_A_CONTACT: f64 = 10.0;
 const AT_REST: f64 = 2.0;
 const STRUCK: f64 = 6.0;
-/// What a particle costs of that where nothing deforms, and a step makes no grid.
+/// What a particle costs of that where nothing deforms on the common grid, and a step makes none.
 const WITHOUT_GRID: f64 = 0.05;
+/// What a particle on the common grid costs in the plane, over what it does in space.
+const IN_PLANE: f64 = 0.5;
 /// Places at which two bodies touch on a face, in the plane and in space.
 const PLACES: [usize; 2] = [3, 5];
 
@@ -339,19 +361,30 @@ fn by_place(body: &Body, extent: &FillingExtent) -> f64 {
     places.map(at).filter(|speed| speed.is_finite()).fold(0.0, f64::max)
 }
 
+/// How fast a body moves at the start, at most [m/s].
+fn speed(extents: &[FillingExtent], (body, extent): (&Body, &FillingExtent)) -> f64 {
+    let spin = match &body.motion {
+        BodyMotion::Free { spin, .. } => *spin,
+        BodyMotion::Rigid { spin, .. } => spin.each_ref().map(|s| s.at(0.0)),
+        BodyMotion::FreeRigid(free) => free.spin,
+    };
+    let reach = half_diagonal(extent, extents);
+    Vector(starting_velocity(body)).norm() + by_place(body, extent) + Vector(spin).norm() * reach
+}
+
+/// How fast anything moves at the start, at most [m/s].
+fn fastest(scene: &Scene, extents: &[FillingExtent]) -> f64 {
+    scene.bodies.iter().zip(extents).map(|body| speed(extents, body)).fold(0.0, f64::max)
+}
+
 /// courant h / max(c + |v|) at the start, at most the longest step that the scene allows [s].
 pub(super) fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
     let signal = |(body, extent): (&Body, &FillingExtent)| {
-        let (wave, spin) = match &body.motion {
-            BodyMotion::Free { spin, .. } => {
-                (scene.materials[body.material].wave_speed(scene.dimension.thickness()), *spin)
-            }
-            BodyMotion::Rigid { spin, .. } => (0.0, spin.each_ref().map(|s| s.at(0.0))),
-            BodyMotion::FreeRigid(free) => (0.0, free.spin),
+        let wave = match body.is_rigid() {
+            true => 0.0,
+            false => scene.materials[body.material].wave_speed(scene.dimension.thickness()),
         };
-        let reach = half_diagonal(extent, extents);
-        let speed = Vector(starting_velocity(body)).norm() + by_place(body, extent);
-        wave + speed + Vector(spin).norm() * reach
+        wave + speed(extents, (body, extent))
     };
     let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
     let step = scene.time.courant * scene.discretization.cell / fastest;

@@ -17,6 +17,9 @@ const UNKNOWN: usize = 3;
 /// Steps whose wall time is said where it is not known how many there will be.
 const ROUND_STEPS: u64 = 1000;
 
+/// A part of the wall time that is said beside it.
+const NOTABLE: f64 = 0.2;
+
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let space = self.dimension.name();
@@ -45,13 +48,10 @@ impl Display for Report {
             self.steps,
             short(self.end)
         )?;
-        let (cores, rate) = (self.machine.cores, self.machine.particle_steps_per_second / 1e6);
-        let (rate, plural) = (short(rate), if cores == 1 { "" } else { "s" });
-        writeln!(
-            f,
-            "wall time    {} (at {rate} million particle-steps/s a core, {cores} core{plural})",
-            self.told_wall_time()
-        )?;
+        writeln!(f, "wall time    {} ({})", self.told_wall_time(), self.told_machine())?;
+        if self.start_time() > NOTABLE * self.wall_time {
+            writeln!(f, "             of which {} before the first step", duration(self.start_time()))?;
+        }
         if self.rigid_contacts > 0 {
             let contacts = self.rigid_contacts;
             writeln!(
@@ -77,8 +77,20 @@ impl Report {
         if !self.ends_at_rest || self.steps <= ROUND_STEPS {
             return whole;
         }
-        let round = duration(self.wall_time * ROUND_STEPS as f64 / self.steps as f64);
+        let start = self.start_time();
+        let round = duration(start + (self.wall_time - start) * ROUND_STEPS as f64 / self.steps as f64);
         format!("{round} for {ROUND_STEPS} steps until the bodies are at rest, {whole} if they never are")
+    }
+
+    /// The machine that the wall time is for: its rate is that of particles on the common grid.
+    fn told_machine(&self) -> String {
+        let (cores, rate) = (self.machine.cores, short(self.machine.particle_steps_per_second / 1e6));
+        let cores = format!("{cores} core{}", if cores == 1 { "" } else { "s" });
+        match self.own_grids {
+            None => format!("at {rate} million particle-steps/s a core, {cores}"),
+            Some(own) if own.is_all => cores,
+            Some(_) => format!("at {rate} million particle-steps/s a core on the common grid, {cores}"),
+        }
     }
 
     fn write_bodies(&self, f: &mut Formatter<'_>) -> Result {

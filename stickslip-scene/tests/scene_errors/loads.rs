@@ -446,10 +446,10 @@ impl checks::Footprint for NoMemory {
     fn particles_around(&self, _: &scene::Scene, _: usize, _: &[stickslip_scene::geometry::Bounds]) -> usize {
         0
     }
-    fn memory(&self, _: &scene::Scene, _: &[usize]) -> f64 {
+    fn memory(&self, _: &scene::Scene, _: &[checks::BodySize]) -> f64 {
         0.0
     }
-    fn copy(&self, _: &scene::Scene, _: &[usize]) -> f64 {
+    fn copy(&self, _: &scene::Scene, _: &[checks::BodySize]) -> f64 {
         0.0
     }
 }

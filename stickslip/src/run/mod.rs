@@ -19,7 +19,7 @@ use start::{Remembered, carry};
 pub use summary::{ReferenceResult, Summary};
 pub use widest::{WidestContact, WidestContacts};
 
-use crate::check::Warning;
+use crate::check::{Report, Warning};
 use crate::door::{Ledger, Simulation, View};
 use crate::march::{FailedStep, March, MarchEnd, Pace};
 use crate::observe::{
@@ -79,6 +79,13 @@ impl RunOptions {
         let until = self.max_time.and_then(|longest| Instant::now().checked_add(longest));
         folder.with_patience(Waiting::new(self.patience.clone(), self.stop.clone(), until))
     }
+}
+
+/// Memory that the run of a scene takes beside its simulation, for the particles that its checks look at [bytes].
+pub fn memory(report: &Report) -> f64 {
+    let deforming = report.bodies.iter().filter(|body| !body.rigid);
+    let particles: Vec<usize> = deforming.map(|body| body.particles).collect();
+    verdict::bytes_of_neighbours(&particles, report.dimension.axes())
 }
 
 /// Runs a scene from the present state of its simulation to the end time, or to the state at rest that dynamic

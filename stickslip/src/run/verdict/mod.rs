@@ -18,6 +18,8 @@ mod spin;
 mod strain;
 mod tearing;
 
+pub(super) use neighbours::bytes_of as bytes_of_neighbours;
+
 use crate::door::{BodyState, Ledger, TracedParticle, View};
 use crate::observe::{Memory, OutputError, RunWarning};
 use crate::run::start::Remembered;

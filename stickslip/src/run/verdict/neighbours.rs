@@ -31,6 +31,23 @@ const TRACED_AT_A_TIME: usize = 1 << 10;
 const BODIES_AT_A_TIME: usize = 1 << 8;
 /// Neighbours are so near, in distances of particles: on a lattice, those across edges and faces of a particle's box.
 const NEAR: f64 = 1.5;
+/// Neighbours of a particle on a lattice, in the plane and in space.
+const AROUND: [usize; 2] = [8, 18];
+/// Bytes of an entry in a table of places by numbers, with the room that such tables leave.
+const PLACE: usize = 2 * size_of::<[u32; 2]>();
+
+/// Memory that the particles take which are chosen of bodies that deform, with so many particles each: what is known of
+/// them, and what they are as they are looked at [bytes].
+pub(in crate::run) fn bytes_of(particles: &[usize], axes: usize) -> f64 {
+    let looked_at = chosen(particles.len(), MOST_BODIES);
+    let particles: Vec<usize> = looked_at.into_iter().map(|place| particles[place as usize]).collect();
+    let (all, around) = (particles.iter().sum::<usize>().max(1), AROUND[axes - 2]);
+    let of_body = |count: usize| count.min((MOST * count / all).max(FEWEST) * (1 + around));
+    let pairs = size_of::<[u32; 2]>() * around / 2;
+    let each = size_of::<TracedParticle>() + size_of::<[f64; 3]>() + size_of::<u32>() + PLACE + pairs;
+    particles.into_iter().map(|count| (each * of_body(count)) as f64).sum()
+}
+
 /// Neighbours in each body; none in a rigid one.
 pub(super) fn of_bodies(scene: &Scene, view: &dyn View) -> Vec<Neighbours> {
     // Rigid ones do not count: without bounds they have others all the time.
