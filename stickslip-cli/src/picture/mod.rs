@@ -1,7 +1,10 @@
 //! Pictures of particles, drawn without a display.
 
 mod arrows;
+mod band;
+mod between;
 mod camera;
+mod carried;
 mod field;
 mod floor;
 mod furniture;
@@ -37,7 +40,7 @@ use floor::Slabs;
 use furniture::Pen;
 use grains::Grain;
 use light::{Lit, Surroundings, Tint};
-use plane::{DrawnGrains, PlaneView};
+use plane::{DrawnGrains, KnownShapes, PlaneView};
 use skins::Mesh;
 use std::sync::Arc;
 use stickslip::door::ParticleSnapshot;
@@ -72,7 +75,7 @@ pub struct PictureStyle {
     pub hidden: Vec<PicturePart>,
     /// Surfaces of bodies in space, which are balls where there are none.
     pub skins: Option<Arc<Skins>>,
-    /// Shapes of rigid bodies in the plane, which are their particles' squares where there are none.
+    /// Shapes of bodies in the plane, which are their particles' squares where there are none.
     pub outlines: Option<Arc<Outlines>>,
 }
 
@@ -332,11 +335,13 @@ impl Scene<'_> {
             size: inner,
         };
         let [left, top] = [margins[0] * SAMPLES, margins[1] * SAMPLES];
-        let kept: Vec<Grain> =
-            grains.iter().filter(|grain| !self.setting.has_floor(grain.body)).copied().collect();
-        let shapes = look.outlines.as_ref().map(|outlines| outlines.posed(subject.particles, look.mirror));
-        let shown = if floors.is_empty() { grains } else { &kept };
-        let drawn = DrawnGrains::new(shown, &window, &shapes.unwrap_or_default());
+        let outlines = look.outlines.as_ref();
+        let known = KnownShapes {
+            posed: outlines.map_or_else(Vec::new, |all| all.posed(subject.particles, look.mirror)),
+            carried: outlines.map_or_else(Vec::new, |all| all.carried(subject.particles, look.mirror)),
+            hidden: floors.iter().map(|floor| floor.body).collect(),
+        };
+        let drawn = DrawnGrains::new(grains, &window, &known);
         let own = if look.contours > 0 && subject.smoother().is_none() {
             Some(subject::smoother(subject.particles, subject.quantity))
         } else {

@@ -1,14 +1,18 @@
-//! Rigid bodies of the plane by their own shapes, carried along by two of their particles.
+//! Bodies of the plane by their own shapes: rigid ones carried along by two of their particles, others as
+//! [`super::carried`] has them.
 
+use super::carried::{CarriedShape, Deforming};
 use super::setting::SymmetryPlane;
 use stickslip::door::ParticleSnapshot;
 use stickslip::geometry::{Bounds, Shape};
-use stickslip::scene::{Face, Scene};
+use stickslip::scene::{Face, Interior, Scene};
 
-/// The shapes of a run's rigid bodies with bounds, tied to the particles of its first snapshot.
+/// The shapes of a run's bodies, tied to the particles of its first snapshot: of rigid ones with bounds, and of those
+/// on grids of their own. Other bodies are where their particles are: they may tear and flow.
 #[derive(Clone, Debug, Default)]
 pub struct Outlines {
     all: Vec<Outline>,
+    deforming: Vec<Deforming>,
     cuts: Vec<Cut>,
 }
 
@@ -25,7 +29,7 @@ struct Outline {
 
 /// A face of the domain that is a mirror: bodies end there.
 #[derive(Clone, Copy, Debug)]
-struct Cut {
+pub struct Cut {
     axis: usize,
     position: f64,
     /// 1 where the domain lies above it, -1 where it lies below.
@@ -69,6 +73,8 @@ impl Outlines {
             })
         };
         let all = scene.bodies.iter().enumerate().filter_map(outline).collect();
+        let with_grids = (0..scene.bodies.len()).filter(|&body| scene.interior(body) == Interior::Reference);
+        let deforming = with_grids.map(|body| Deforming::new(scene, body, first, &own[body])).collect();
         let cut = |domain: &stickslip::scene::Domain, i: usize| {
             let (axis, side) = (i / 2, i % 2);
             let position = [domain.min, domain.max][side][axis];
@@ -76,7 +82,28 @@ impl Outlines {
             is_mirror.then_some(Cut { axis, position, side: if side == 0 { 1.0 } else { -1.0 } })
         };
         let cuts = scene.domain.iter().flat_map(|domain| (0..4).filter_map(|i| cut(domain, i))).collect();
-        Outlines { all, cuts }
+        Outlines { all, deforming, cuts }
+    }
+
+    /// The shapes of bodies on grids of their own in a snapshot, and their mirror images.
+    pub fn carried<'a>(
+        &'a self,
+        particles: &ParticleSnapshot,
+        mirror: Option<SymmetryPlane>,
+    ) -> Vec<CarriedShape<'a>> {
+        let mut own = vec![Vec::new(); self.deforming.len()];
+        for (i, body) in particles.body.iter().enumerate() {
+            if let Ok(place) = self.deforming.binary_search_by_key(body, |deforming| deforming.body) {
+                own[place].push((i as u32, particles.number[i]));
+            }
+        }
+        let carried = |(deforming, own): (&'a Deforming, &Vec<(u32, u32)>)| {
+            let count = particles.body.len() as u32;
+            let image =
+                mirror.map(|mirror| CarriedShape::new(deforming, &self.cuts, own, Some((mirror, count))));
+            [Some(CarriedShape::new(deforming, &self.cuts, own, None)), image]
+        };
+        self.deforming.iter().zip(&own).flat_map(carried).flatten().collect()
     }
 
     /// The shapes in a snapshot, and their mirror images; bodies whose particles have left have none.
@@ -117,17 +144,23 @@ impl Outlines {
     }
 }
 
+impl Cut {
+    /// Whether a place is beyond the face [m].
+    pub fn takes(&self, place: [f64; 2]) -> bool {
+        (place[self.axis] - self.position) * self.side < 0.0
+    }
+}
+
 impl PosedShape<'_> {
     /// Whether a place is in it [m].
     pub fn holds(&self, mut place: [f64; 2]) -> bool {
         if let Some(SymmetryPlane { axis, position }) = self.mirror {
             place[axis] = 2.0 * position - place[axis];
         }
-        let is_cut = |cut: &Cut| (place[cut.axis] - cut.position) * cut.side < 0.0;
         let [cos, sin] = self.turn;
         let away = [place[0] - self.origin[0], place[1] - self.origin[1]];
         let [x, y] = turned(away, [cos, -sin]);
-        !self.cuts.iter().any(is_cut) && self.shape.contains([x, y, 0.0], 2)
+        !self.cuts.iter().any(|cut| cut.takes(place)) && self.shape.contains([x, y, 0.0], 2)
     }
 
     /// A box around it: lower and upper corner [m].

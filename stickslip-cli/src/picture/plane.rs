@@ -1,6 +1,9 @@
-//! Plane scenes: every particle is drawn as the parallelogram that its square has become, and rigid bodies by their own
-//! shapes where these are known.
+//! Plane scenes: every particle is drawn as the parallelogram that its square has become, and what lies between
+//! particles of one body as the nearest of them. Bodies whose shapes are known end where these do.
 
+use super::band::{BAND, Band};
+use super::between::triangles;
+use super::carried::{CarriedShape, Workspace};
 use super::grains::Grain;
 use super::outlines::PosedShape;
 use crate::drawing::{Rgb, SAMPLES, shaded};
@@ -18,39 +21,23 @@ pub struct PlaneView {
     pub size: [usize; 2],
 }
 
-const NOTHING: u32 = u32::MAX;
-/// Rows of the image that one thread draws at a time.
-const BAND: usize = 48;
+/// What is known of bodies beside their particles.
+#[derive(Default)]
+pub struct KnownShapes<'a> {
+    /// Shapes of rigid bodies, which are drawn by these, above all others.
+    pub posed: Vec<PosedShape<'a>>,
+    /// Shapes of bodies on grids of their own, above what is left.
+    pub carried: Vec<CarriedShape<'a>>,
+    /// Bodies that are not drawn.
+    pub hidden: HashSet<u32>,
+}
+
+/// No grain.
+pub const NOTHING: u32 = u32::MAX;
 /// Particles are drawn this much larger, so that rounding leaves no cracks between them.
 const OVERLAP: f64 = 1.03;
-/// Half the width of holes between particles that do not stand in rows along the axes, as part of their side: at most
-/// 0.21 where they stand in rows along a diagonal.
-const HOLE: f64 = 0.5;
-/// The most that is looked at for one [pixels].
-const FARTHEST: f64 = 100.0;
-/// A turn in sixteen parts, as steps along either axis.
-const WAYS: [[f64; 2]; 16] = {
-    // Cosines of one, two and three of these parts.
-    const C: [f64; 3] = [0.923_879_532_511_286_7, std::f64::consts::FRAC_1_SQRT_2, 0.382_683_432_365_089_8];
-    [
-        [1.0, 0.0],
-        [-1.0, 0.0],
-        [0.0, 1.0],
-        [0.0, -1.0],
-        [C[1], C[1]],
-        [-C[1], -C[1]],
-        [C[1], -C[1]],
-        [-C[1], C[1]],
-        [C[0], C[2]],
-        [-C[0], -C[2]],
-        [C[0], -C[2]],
-        [-C[0], C[2]],
-        [C[2], C[0]],
-        [-C[2], -C[0]],
-        [C[2], -C[0]],
-        [-C[2], C[0]],
-    ]
-};
+/// Between particles that are smaller, no hole is wider than the cracks that are closed anyway [pixels].
+const SMALL: f64 = 4.0;
 
 impl PlaneView {
     /// Pixel of a position, from the left and from the top.
@@ -67,6 +54,15 @@ impl PlaneView {
     /// Pixels per metre.
     pub fn scale(&self) -> f64 {
         self.size[0] as f64 / (self.high[0] - self.low[0])
+    }
+
+    /// Whether a grain, or what lies between it and its neighbours, may be in the window.
+    fn sees(&self, grain: &Grain) -> bool {
+        let f = &grain.deformation;
+        (0..2).all(|axis| {
+            let reach = 2.0 * grain.side * (f[3 * axis].abs() + f[3 * axis + 1].abs());
+            (self.low[axis] - reach..=self.high[axis] + reach).contains(&grain.position[axis])
+        })
     }
 
     /// The same window with so many pixels more on every side.
@@ -89,60 +85,57 @@ pub struct DrawnGrains<'a> {
 }
 
 impl<'a> DrawnGrains<'a> {
-    /// Draws the grains; where they overlap, the later one shows. Bodies whose shapes are given are drawn by these,
-    /// above all others.
-    pub fn new(grains: &'a [Grain], window: &PlaneView, shapes: &[PosedShape]) -> Self {
-        let by_shape: HashSet<u32> = shapes.iter().map(|shape| shape.body).collect();
-        let draw_all = |window: &PlaneView, is_meant: &(dyn Fn(&Grain) -> bool + Sync)| {
-            let [width, height] = window.size;
-            let mut grain = vec![NOTHING; width * height];
-            grain.par_chunks_mut(BAND * width).enumerate().for_each(|(band, pixels)| {
-                for (i, each) in grains.iter().enumerate().filter(|(_, each)| is_meant(each)) {
-                    draw((i as u32, each), window, band * BAND, pixels);
-                }
-            });
-            DrawnGrains { grains, size: window.size, grain }
-        };
-        // What is around a hole at the edge of the image lies outside it.
-        let margin = farthest(grains, window.scale());
-        let mut drawn = draw_all(&window.widened(margin), &|grain| !by_shape.contains(&grain.body));
+    /// Draws the grains; where they overlap, the later one shows.
+    pub fn new(grains: &'a [Grain], window: &PlaneView, known: &KnownShapes) -> Self {
+        let KnownShapes { posed, carried, hidden } = known;
+        let by_shape: HashSet<u32> = posed.iter().map(|shape| shape.body).collect();
+        let carried_bodies = carried.iter().map(|shape| shape.body);
+        let others: HashSet<u32> = by_shape.iter().copied().chain(carried_bodies).collect();
+        let is_other = |body: u32| others.contains(&body) || hidden.contains(&body);
+        // Across a crack at the edge of the image lies what is outside it.
+        let mut drawn = Self::of_particles(grains, &window.widened(SAMPLES), |body| !is_other(body));
+        drawn.add_carried(carried, &window.widened(SAMPLES));
         drawn.close();
-        drawn.fill_holes(window.scale());
-        drawn.narrow(margin);
-        if !shapes.is_empty() {
-            let inside = draw_all(window, &|grain| by_shape.contains(&grain.body));
-            drawn.add_shapes(shapes, &inside, window);
+        drawn.narrow(SAMPLES);
+        if !posed.is_empty() {
+            let inside = Self::of_particles(grains, window, |body| by_shape.contains(&body));
+            drawn.add_posed(posed, &inside, window);
         }
         drawn
     }
 
-    /// Fills holes between grains of one body: places from which it is near in all directions.
-    fn fill_holes(&mut self, scale: f64) {
-        let [width, height] = self.size;
-        let farthest = farthest(self.grains, scale);
-        let around = |x: usize, y: usize, way: [f64; 2]| {
-            (1..=farthest).find_map(|k| {
-                let place = [x as f64 + way[0] * k as f64, y as f64 + way[1] * k as f64];
-                let place = place.map(|x| if x < 0.0 { usize::MAX } else { x.round() as usize });
-                let (index, grain) = self.grain(place[0], place[1])?;
-                Some((index as u32, grain.body, k as f64 <= HOLE * grain.side * scale))
-            })
+    /// The grains of those bodies that are meant, and what lies between them.
+    fn of_particles(grains: &'a [Grain], window: &PlaneView, is_meant: impl Fn(u32) -> bool) -> Self {
+        let [width, height] = window.size;
+        let is_seen = |&i: &u32| {
+            let grain = &grains[i as usize];
+            is_meant(grain.body) && window.sees(grain)
         };
-        let filled = |place: usize| {
-            if self.grain[place] != NOTHING {
-                return None;
+        let seen: Vec<u32> = (0..grains.len() as u32).filter(is_seen).collect();
+        let large = seen.iter().filter(|&&i| grains[i as usize].side * window.scale() > SMALL);
+        let between = triangles(grains, &large.copied().collect::<Vec<_>>());
+        let mut grain = vec![NOTHING; width * height];
+        grain.par_chunks_mut(BAND * width).enumerate().for_each(|(number, pixels)| {
+            let band = Band::new(number, window);
+            for &i in &seen {
+                let grain = &grains[i as usize];
+                band.visit(grain, 0.5 * OVERLAP * grain.side, |pixel, _| pixels[pixel] = i);
             }
-            let (x, y) = (place % width, place / width);
-            let (index, body, is_near) = around(x, y, WAYS[0])?;
-            let others = &WAYS[1..];
-            let is_hole = is_near
-                && others
-                    .iter()
-                    .all(|way| around(x, y, *way).is_some_and(|(_, other, near)| near && other == body));
-            is_hole.then_some((place, index))
-        };
-        let filled: Vec<(usize, u32)> = (0..width * height).into_par_iter().filter_map(filled).collect();
-        filled.into_iter().for_each(|(place, index)| self.grain[place] = index);
+            between.iter().for_each(|three| band.join(grains, *three, pixels));
+        });
+        DrawnGrains { grains, size: window.size, grain }
+    }
+
+    /// Puts the shapes of bodies on grids of their own above what there is.
+    fn add_carried(&mut self, shapes: &[CarriedShape], window: &PlaneView) {
+        if shapes.is_empty() {
+            return;
+        }
+        let (grains, width) = (self.grains, window.size[0]);
+        self.grain.par_chunks_mut(BAND * width).enumerate().for_each(|(number, pixels)| {
+            let (band, mut work) = (Band::new(number, window), Workspace::new(pixels.len()));
+            shapes.iter().for_each(|shape| shape.draw(grains, &band, pixels, &mut work));
+        });
     }
 
     /// Takes so many pixels away on every side.
@@ -154,7 +147,7 @@ impl<'a> DrawnGrains<'a> {
     }
 
     /// Puts shapes above all; what is in them looks like the nearest grain of their bodies.
-    fn add_shapes(&mut self, shapes: &[PosedShape], inside: &DrawnGrains, window: &PlaneView) {
+    fn add_posed(&mut self, shapes: &[PosedShape], inside: &DrawnGrains, window: &PlaneView) {
         let [width, height] = self.size;
         let first: HashMap<u32, usize> =
             inside.grains.iter().enumerate().rev().map(|(i, grain)| (grain.body, i)).collect();
@@ -244,39 +237,9 @@ impl<'a> DrawnGrains<'a> {
     }
 }
 
-/// How far from a hole what is around it may lie [pixels].
-fn farthest(grains: &[Grain], scale: f64) -> usize {
-    let side = grains.iter().map(|grain| grain.side).fold(0.0, f64::max);
-    (HOLE * side * scale).min(FARTHEST) as usize
-}
-
-/// Marks the pixels of one grain on the rows from `top` on: those whose place in the undeformed square is inside it.
-fn draw((index, grain): (u32, &Grain), window: &PlaneView, top: usize, pixels: &mut [u32]) {
-    let [width, _] = window.size;
-    let rows = pixels.len() / width;
-    let half = 0.5 * OVERLAP * grain.side * window.scale();
-    let f = &grain.deformation;
-    let reach = [(f[0].abs() + f[1].abs()) * half, (f[3].abs() + f[4].abs()) * half];
-    let [x, y] = window.pixel([grain.position[0], grain.position[1]]);
-    let det = f[0] * f[4] - f[1] * f[3];
-    let span = |center: f64, reach: f64, end: usize| {
-        let low = (center - reach).floor().max(0.0) as usize;
-        low..((center + reach).ceil().max(0.0) as usize).min(end)
-    };
-    for row in span(y - top as f64, reach[1], rows) {
-        let up = y - ((top + row) as f64 + 0.5);
-        for column in span(x, reach[0], width) {
-            let right = column as f64 + 0.5 - x;
-            let local = [(f[4] * right - f[1] * up) / det, (f[0] * up - f[3] * right) / det];
-            if local[0].abs() <= half && local[1].abs() <= half {
-                pixels[row * width + column] = index;
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::sample;
     use super::*;
 
     #[test]
@@ -290,7 +253,7 @@ mod tests {
         };
         let grains = [grain];
         let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
-        let drawn = DrawnGrains::new(&grains, &window, &[]);
+        let drawn = DrawnGrains::new(&grains, &window, &KnownShapes::default());
         let hit = |x: f64, y: f64| {
             let [column, row] = window.pixel([x, y]);
             drawn.grain(column as usize, row as usize).is_some()
@@ -312,7 +275,7 @@ mod tests {
         let window = PlaneView { low: [-2.0, -2.0], high: [2.0, 2.0], size: [80, 80] };
         for (body, apart, closed) in [(0, 1.1, true), (0, 1.4, false), (1, 1.1, false)] {
             let grains = [grain(0, -0.5 * apart), grain(body, 0.5 * apart)];
-            let drawn = DrawnGrains::new(&grains, &window, &[]);
+            let drawn = DrawnGrains::new(&grains, &window, &KnownShapes::default());
             assert_eq!(drawn.grain(40, 40).is_some(), closed, "{body} {apart}");
         }
     }
@@ -338,7 +301,7 @@ mod tests {
         // A pixel is 0.05 m.
         let window = PlaneView { low: [-4.0, -4.0], high: [4.0, 4.0], size: [160, 160] };
         let empty = |grains: &[Grain]| {
-            let drawn = DrawnGrains::new(grains, &window, &[]);
+            let drawn = DrawnGrains::new(grains, &window, &KnownShapes::default());
             drawn.grain.iter().filter(|index| **index == NOTHING).count()
         };
         for degrees in [0.0, 10.0, 22.5, 30.0, 45.0_f64] {
@@ -347,5 +310,47 @@ mod tests {
             let crack = empty(&turned(degrees.to_radians(), true));
             assert!(crack > 900, "{degrees}: {crack}");
         }
+    }
+
+    /// A fitted disk of 1 m, of squares of up to 50 mm, whole and deformed: a place in it is drawn. Another disk a
+    /// twentieth of a square beside it stays beside it.
+    #[test]
+    fn a_fitted_disk_has_no_holes_and_keeps_off_its_neighbour() {
+        let disk = |name: &str, x: f64| {
+            format!(
+                "[[bodies]]\nname = '{name}'\nmaterial = 'rubber'\nparticles = 'fitted'\n\
+                 shape.ball = {{ center = [{x}, 0], radius = 1 }}\n"
+            )
+        };
+        let (_, first) = sample::rubber("interior = 'grid'", &(disk("a", 0.0) + &disk("b", 2.0025)));
+        for f in [[1.0, 0.0, 0.0, 1.0], [1.8, 0.0, 0.0, 0.7], [1.0, 0.8, 0.0, 1.0], [0.8, -0.6, 0.6, 0.8]] {
+            let grains = sample::colored(&sample::deformed(&first, f));
+            // The corners of the box around the first disk.
+            let half = [f[0].hypot(f[1]) + 0.05, f[2].hypot(f[3]) + 0.05];
+            // From small squares, between which cracks are closed, to large ones.
+            for scale in [60.0, 150.0, 700.0] {
+                let size = half.map(|half| (2.0 * half * scale) as usize);
+                let low = size.map(|count| -0.5 * count as f64 / scale);
+                let window = PlaneView { low, high: low.map(|x| -x), size };
+                let drawn = DrawnGrains::new(&grains, &window, &KnownShapes::default());
+                let det = f[0] * f[3] - f[1] * f[2];
+                for [x, y] in (0..size[0] * size[1]).map(|pixel| [pixel % size[0], pixel / size[0]]) {
+                    let place = window.place([x as f64 + 0.5, y as f64 + 0.5]);
+                    let start = [f[3] * place[0] - f[1] * place[1], f[0] * place[1] - f[2] * place[0]];
+                    let radius = start[0].hypot(start[1]) / det;
+                    let body = drawn.grain(x, y).map(|(_, grain)| grain.body);
+                    // Corners of squares stand out by less than 0.03 m, and edges stand back by as much.
+                    assert!(radius > 0.96 || body == Some(0), "{f:?} {scale} {place:?}: {body:?}");
+                    assert!(radius < 1.04 || body != Some(0), "{f:?} {scale} {place:?}");
+                }
+            }
+        }
+        // Between the disks, where they are nearest.
+        let grains = sample::colored(&first);
+        let window = PlaneView { low: [0.9, -0.1], high: [1.1, 0.1], size: [2000, 2000] };
+        let drawn = DrawnGrains::new(&grains, &window, &KnownShapes::default());
+        let column = |x: f64| window.pixel([x, 0.0])[0] as usize;
+        let between = (column(1.0)..column(1.0025)).filter(|x| drawn.grain(*x, 1000).is_none());
+        assert!(between.count() > 0, "the gap is 25 pixels wide, less what squares are drawn larger");
     }
 }

@@ -1,8 +1,10 @@
 //! Bodies made of grains for tests of the pictures.
 
 use super::Grain;
+use super::grains::grains;
 use crate::drawing::body_color;
 use stickslip::door::ParticleSnapshot;
+use stickslip::scene::Scene;
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
@@ -67,4 +69,36 @@ pub fn ball_on_slab(dimension: usize, side: f64) -> ParticleSnapshot {
         snapshot.deformation.push(IDENTITY);
     }
     snapshot
+}
+
+/// Bodies of one rubber in the plane, of cells of 0.1 m and with other keys of `space`: the scene, and its particles at
+/// the start.
+pub fn rubber(space: &str, bodies: &str) -> (Scene, ParticleSnapshot) {
+    let text = format!(
+        "space = {{ dimension = 'plane-strain', cell = 0.1, {space} }}\n\
+         time.end = 1\n\
+         materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}\n\
+         {bodies}"
+    );
+    let scene = stickslip::scene::parse("a.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+    let simulation = stickslip::step::build(&scene).unwrap_or_else(|problem| panic!("{problem:?}"));
+    let first = simulation.snapshot();
+    (scene, first)
+}
+
+/// The particles as they are after a deformation gradient in the plane, row by row, about the origin.
+pub fn deformed(particles: &ParticleSnapshot, [a, b, c, d]: [f64; 4]) -> ParticleSnapshot {
+    let mut deformed = particles.clone();
+    for x in &mut deformed.position {
+        *x = [a * x[0] + b * x[1], c * x[0] + d * x[1], 0.0];
+    }
+    deformed.deformation.fill([a, b, 0.0, c, d, 0.0, 0.0, 0.0, 1.0]);
+    deformed.volume.iter_mut().for_each(|volume| *volume *= a * d - b * c);
+    deformed
+}
+
+/// The particles in the colours of their bodies.
+pub fn colored(particles: &ParticleSnapshot) -> Vec<Grain> {
+    let colors: Vec<_> = particles.body.iter().map(|body| body_color(*body as usize)).collect();
+    grains(particles, &colors)
 }
