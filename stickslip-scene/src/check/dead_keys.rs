@@ -1,7 +1,8 @@
 //! Keys of a scene that do nothing with the bodies that it has.
 
+use super::bodies::smallest_extent;
 use super::rules::CountedRules;
-use super::warning::Warning;
+use super::warning::{Warning, and_more};
 use crate::scene::{
     Action, BasisKind, Body, Changes, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior,
     JointKind, Load, Motor, Normal, Scene,
@@ -15,6 +16,7 @@ pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
         .chain(nothing_on_the_grid(scene))
         .chain(nothing_heats(scene))
         .chain(rigid_interiors(scene))
+        .chain(rigid_particles(scene))
         .chain(overruled_drift(scene))
         .chain(overruled_motor(scene))
         .chain(late_tables(scene))
@@ -92,6 +94,41 @@ fn rigid_interiors(scene: &Scene) -> impl Iterator<Item = Warning> {
         of.map(|_| Warning::about(format!("bodies[{i}].interior"), "does not act: the body is rigid"))
     };
     scene.bodies.iter().enumerate().filter_map(told)
+}
+
+/// Particles of rigid bodies are for bodies on the common grid, which feel them at nodes. Free rigid bodies look for
+/// others from points of surfaces that are as far apart as particles, and loads and springs hold on at such points,
+/// too. All else touches a rigid body by its exact shape. Where a body is so thin that the scene's own count hardly
+/// fills it, the key acts: a body without particles is refused.
+fn rigid_particles(scene: &Scene) -> Option<Warning> {
+    let by_points = |(i, body): (usize, &Body)| match body.is_rigid() {
+        true => body.as_free_rigid().is_some(),
+        false => scene.interior(i) == Interior::Grid,
+    };
+    if scene.bodies.iter().enumerate().any(by_points) {
+        return None;
+    }
+    let usual = scene.discretization.particles_per_side;
+    let filled = 2.0 * scene.discretization.cell / usual as f64 * (1.0 - 1e-9);
+    let is_held = |i: usize| {
+        let mut ends = scene.springs.iter().flat_map(|spring| &spring.ends);
+        ends.any(|end| end.body == i) || scene.loads.iter().any(|load| load.body == i)
+    };
+    let is_dead = |&(i, body): &(usize, &Body)| {
+        let differs = body.particles_per_side.is_some_and(|count| count != usual);
+        differs
+            && body.is_rigid()
+            && !is_held(i)
+            && smallest_extent(&body.shape, scene.dimension.axes()) >= filled
+    };
+    let mut dead = scene.bodies.iter().enumerate().filter(is_dead);
+    let (first, body) = dead.next()?;
+    let why = format!(
+        "does not act on how anything moves: no body deforms on the common grid and no rigid one is free, so exact \
+         shapes alone touch; particles of {} are only those of snapshots, with their mass in bodies.csv",
+        and_more(&format!("`{}`", body.name), dead.count())
+    );
+    Some(Warning::about(format!("bodies[{first}].particles_per_side"), why))
 }
 
 /// Damping and relaxation are of bodies that deform.
@@ -208,6 +245,44 @@ mod tests {
         assert_eq!(told("time = { end = 1, transfer = 'rflip' }", ""), [""; 0]);
         let found = told("time.end = 1", "interior = 'reference'\nrigid = {}");
         assert_eq!(found, ["bodies[1].interior: does not act: the body is rigid"]);
+    }
+
+    #[test]
+    fn particles_of_a_rigid_body_act_on_the_common_grid_alone() {
+        let told = |of_a: &str, of_b: &str, rest: &str| {
+            let text = format!(
+                "space = {{ dimension = '2d', cell = 0.1, interior = 'reference' }}\n\
+                 time.end = 1\n\
+                 materials.iron = {{ density = 1, neo_hookean = {{ young_modulus = 9, poisson_ratio = 0 }} }}\n\
+                 contact = [{{ friction = 0 }}]\n\
+                 [[bodies]]\nname = 'a'\nmaterial = 'iron'\nshape.ball = {{ center = [0, 0], radius = 1 }}\n{of_a}\n\
+                 [[bodies]]\nname = 'b'\nmaterial = 'iron'\n{of_b}\n{rest}"
+            );
+            let scene =
+                crate::scene::parse("dead.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}")).scene;
+            super::warnings(&scene).map(|warning| warning.to_string()).collect::<Vec<_>>()
+        };
+        let box_of = |high: &str| format!("shape.box = {{ min = [2, 0], max = [3, {high}] }}");
+        let (high, thin) = (box_of("1"), box_of("0.06"));
+        let fine = format!("{high}\nrigid = {{}}\nparticles_per_side = 4");
+        let why = "bodies[1].particles_per_side: does not act on how anything moves: no body deforms on the common \
+                   grid and no rigid one is free, so exact shapes alone touch; particles of `b` are only those of \
+                   snapshots, with their mass in bodies.csv";
+        assert_eq!(told("", &fine, ""), [why]);
+        let spring = "[[springs]]\nname = 'strut'\nstiffness = 1\nfrom = { body = 'a', on = 'x_max' }\n\
+                      to = { body = 'b', on = 'x_min' }";
+        let free = fine.replace("rigid = {}", "rigid.free = {}");
+        let usual = fine.replace("= 4", "= 2");
+        for (of_a, of_b, rest) in [
+            ("interior = 'grid'", &fine, ""),
+            ("rigid.free = {}", &fine, ""),
+            ("", &free, ""),
+            ("", &usual, ""),
+            ("", &fine, spring),
+            ("", &format!("{thin}\nrigid = {{}}\nparticles_per_side = 4"), ""),
+        ] {
+            assert_eq!(told(of_a, of_b, rest), [""; 0], "{of_a} {of_b} {rest}");
+        }
     }
 
     #[test]
