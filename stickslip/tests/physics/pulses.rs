@@ -107,6 +107,25 @@ fn so_do_pulses_of_gravity_pressure_and_motors() {
     }
 }
 
+/// Loads and gravity give a body on a grid of its own the same.
+#[test]
+fn so_do_pulses_on_a_grid_of_its_own() {
+    let start_own = |text: String| start(&text.replacen("\"grid\"", "\"reference\"", 1));
+    for at in beginnings().step_by(6) {
+        for (pulse, impulse, tolerance) in pulses(1e5, at) {
+            let load = format!("[[loads]]\nbody = \"block\"\non = \"volume\"\nforce = [{pulse}, 0]");
+            let mut simulation = start_own(block("", &load));
+            run_to(&mut *simulation, 3e-3, |_| {});
+            near(simulation.ledger().momentum[0], impulse, tolerance, &pulse);
+            near(simulation.loads()[0].impulse[0], impulse, tolerance, &pulse);
+            let gravity = format!("gravity = [{pulse}, 0]\ntime =");
+            let mut simulation = start_own(block("", "").replacen("time =", &gravity, 1));
+            run_to(&mut *simulation, 3e-3, |_| {});
+            near(simulation.ledger().momentum[0], 10.0 * impulse, tolerance, &pulse);
+        }
+    }
+}
+
 /// A body of prescribed velocity, one of prescribed spin, and a support go as far as they are told.
 #[test]
 fn prescribed_motion_goes_its_whole_way() {

@@ -491,3 +491,46 @@ fn the_ends_of_a_rigid_plate_do_not_hook() {
         assert!((ledger.total / ledger.external_work).abs() < 0.06, "{ledger:?}");
     }
 }
+
+/// Particles may stay behind in steps that nobody looks at: once they are shown, all is what it is if somebody looks
+/// after each step, also where steps are taken back, and in a checkpoint.
+#[test]
+fn steps_that_nobody_looks_at_lead_to_the_same() {
+    let speed = 0.04 * WAVE;
+    let box_ = "[[bodies]]\nname = 'box'\nmaterial = 'rubber'\n\
+                shape.box = { min = [-1, 1.4], max = [0.3, 2.6] }\nvelocity = [0, -0.05]\n";
+    let text = scene(
+        0.25,
+        &(disk("a", [-1.01, -0.4], [speed, 0.0]) + &disk("b", [1.01, 0.4], [-speed, 0.0]) + box_),
+    );
+    let [mut seen, mut unseen] = [start(&text), start(&text)];
+    for round in 0..4 {
+        for step in 0..100 {
+            seen.step(f64::INFINITY).expect("the trial is sound");
+            unseen.step_unseen(f64::INFINITY).expect("the trial is sound");
+            if step == 50 && round == 1 {
+                unseen.hold();
+            }
+        }
+        if round == 1 {
+            assert!(unseen.take_back());
+            for _ in 0..49 {
+                unseen.step_unseen(f64::INFINITY).expect("the trial is sound");
+            }
+        }
+        unseen.show();
+        let [one, other] = [&seen, &unseen].map(|all| format!("{:?} {:?}", all.snapshot(), all.ledger()));
+        assert!(one == other, "after round {round}");
+    }
+    let [one, other] = [seen, unseen].map(|all| format!("{:?}", all.save()));
+    assert!(one == other);
+}
+
+/// Who looks at particles that stayed behind is told, not shown what was.
+#[test]
+#[should_panic(expected = "particles are shown before somebody looks at them")]
+fn particles_that_stayed_behind_are_not_looked_at() {
+    let mut simulation = start(&scene(0.25, &disk("a", [0.0, 0.0], [0.1, 0.0])));
+    simulation.step_unseen(f64::INFINITY).expect("the trial is sound");
+    simulation.bodies();
+}
