@@ -213,6 +213,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             let points = first..first + load.points.len();
             first = points.end;
             let Some(function) = load.action.outside().and_then(OutsideValue::function) else { continue };
+            values.resize(points.end.max(values.len()), [0.0; 3]);
+            // Nodes have asked for those of bodies on grids of their own.
+            if self.settings.references.iter().any(|own| own.body == load.body) {
+                continue;
+            }
             let particles = &self.state.bodies[load.body].particles;
             now.clear();
             now.extend(load.points.iter().zip(places).map(|(point, place)| match *place {
@@ -221,7 +226,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }));
             start.clear();
             start.extend(load.points.iter().map(|point| point.position));
-            values.resize(points.end.max(values.len()), [0.0; 3]);
             for room in [&mut *said, &mut *bend] {
                 room.clear();
                 room.resize(points.len(), [0.0; 3]);
@@ -440,7 +444,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// How far the points of a load are from where they were, the mean over those that are there [m].
     pub(super) fn load_displacement(&self, load: &LoadPoints) -> [f64; 3] {
-        let particles = &self.state.bodies[load.body].particles;
+        let particles = &self.shown()[load.body].particles;
         let mut places = Vec::new();
         find_carriers(&mut places, particles.numbers(), &load.points);
         // Places, measures, and how many.

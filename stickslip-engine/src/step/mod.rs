@@ -261,7 +261,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
     fn step(&mut self, longest: f64) -> Result<f64, StepError> {
         self.workspace.unseen = false;
-        self.take_step(longest)
+        let step = self.take_step(longest);
+        // A step that fails may leave some behind.
+        self.show_references();
+        step
     }
 
     fn step_unseen(&mut self, longest: f64) -> Result<f64, StepError> {

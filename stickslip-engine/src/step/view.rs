@@ -429,7 +429,7 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
         if self.without_bounds(body).is_some() || self.removes_leavers() || self.among.is_some() {
             None
         } else {
-            self.state.bodies[body].particles.column_place(name)
+            self.shown()[body].particles.column_place(name)
         }
     }
 

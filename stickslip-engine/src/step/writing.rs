@@ -29,6 +29,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         if self.among.is_some() {
             return Err(WriteError::Shared);
         }
+        self.show_references();
         let reference = self.reference_of(number);
         let body = &self.state.bodies[number];
         let found = body.particles.described().find(|(_, column)| column.name == name);
@@ -58,7 +59,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             return Err(WriteError::Value { place: at / entries, value: values[at], allowed });
         }
         let gravity = self.settings.gravity.constant().unwrap_or_default();
-        self.show_references();
         let before = Holding::of_particles(&self.totals_of(number), gravity);
         if let Some(place) = reference {
             self.put_velocities(place, values);

@@ -124,7 +124,10 @@ impl<V: Lanes> Elastic<V> {
         let stress = self.law.respond(&motion, &[]).stress;
         let modulus = self.law.wave_modulus(&deformation, jacobian, &[]);
         let inverse = V::ONE / jacobian;
-        let speed = modulus * self.per_density * (shrinking::<V, D>(&cofactor) * (inverse * inverse));
+        let mut speed = modulus * self.per_density * (shrinking::<V, D>(&cofactor) * (inverse * inverse));
+        if absent != 0 {
+            speed = V::select(absent, V::ZERO, speed);
+        }
         *fastest = speed.max(*fastest);
         let largest = V::splat(V::Real::LARGEST);
         let sound =

@@ -255,6 +255,7 @@ fn drive(
     (observers, mut beginning): (&mut [&mut dyn Observer], Beginning),
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
+    simulation.show();
     let mut kept = Kept {
         clock: RunClock::start(simulation, options.threads),
         start: simulation.ledger(),

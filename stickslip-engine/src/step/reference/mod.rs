@@ -302,6 +302,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             return Ok(());
         }
         let start = Instant::now();
+        self.state.references.behind = true;
         self.slow_references(dt.f64());
         self.slip_references(dt.f64());
         self.pierced_reference().map_or(Ok(()), Err)?;
@@ -608,8 +609,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let outside = |x: [f64; 3]| (0..D).any(|k| x[k] < min[k] || x[k] > max[k]);
         let nodes = &self.state.references.nodes;
         self.settings.references.iter().zip(nodes).find_map(|(reference, nodes)| {
-            // Particles lie in the hull of the nodes.
-            if !nodes.places.iter().any(|place| outside(place.space())) {
+            // Particles lie in the hull of the nodes that they see.
+            let seen = |node: &u32| outside(nodes.places[*node as usize].space());
+            let moved = nodes.places.iter().zip(&nodes.masses).filter(|(_, mass)| **mass > 0.0);
+            if !moved.map(|(place, _)| place).any(|place| outside(place.space()))
+                && !nodes.form.followers.nodes.iter().any(seen)
+            {
                 return None;
             }
             let numbers = self.state.bodies[reference.body].particles.numbers();
