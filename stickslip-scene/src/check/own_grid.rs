@@ -47,14 +47,14 @@ fn filled_in<const D: usize>(
         cells: form.cells.len(),
         kinds: CellKinds::of(&form),
         nodes: form.nodes(),
-        bytes: bytes(&form),
+        bytes: bytes_of(&form),
         ..OwnGrid::default()
     };
     Some((form.parts().into_iter().map(site).collect(), grid))
 }
 
 /// Memory of a grid, of one that faces hold without its shares of followers [bytes].
-fn bytes<const D: usize>(form: &Form<D>) -> usize {
+fn bytes_of<const D: usize>(form: &Form<D>) -> usize {
     fn room<X>(list: &Vec<X>) -> usize {
         list.capacity() * size_of::<X>()
     }

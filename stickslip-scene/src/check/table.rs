@@ -49,7 +49,7 @@ impl Display for Report {
             short(self.end)
         )?;
         writeln!(f, "wall time    {} ({})", self.told_wall_time(), self.told_machine())?;
-        if self.start_time() > NOTABLE * self.wall_time {
+        if self.start_time() > (NOTABLE * self.wall_time).max(1.0) {
             writeln!(f, "             of which {} before the first step", duration(self.start_time()))?;
         }
         if self.rigid_contacts > 0 {
