@@ -22,8 +22,6 @@ const NODES_PER_CELL: f64 = 4.0;
 const ITSELF: f64 = 2e5;
 /// Lists of points that touch: those of each body, and of all.
 const TOUCHES: usize = 2;
-/// Lists of what is known of these: of this step and of the one before.
-const MEMORIES: usize = 2;
 
 /// What this engine takes.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +103,8 @@ fn own_grid<T: Real, const D: usize>(grid: &OwnGrid) -> Cost {
     let of_nodes = nodes * (size_of::<f64>() + 3 * size_of::<Vector<f64, D>>());
     let itself = size_of::<BodyHere<T, D>>() + size_of::<Interior<D>>() + size_of::<ReferenceBody<D>>();
     let surface = points * size_of::<SurfacePoint<D>>();
-    let contact = near * (TOUCHES * size_of::<Touch<D>>() + (MEMORIES - 1) * size_of::<Memory>());
+    // With what is known of them from the step before.
+    let contact = near * (TOUCHES * size_of::<Touch<D>>() + size_of::<Memory>());
     Cost {
         copied: (of_nodes + near * size_of::<Memory>()) as f64,
         other: (itself + bytes + surface + contact + Neighbours::<D>::bytes_of(points, near)) as f64,

@@ -50,7 +50,8 @@ fn told_over_held(dimension: &str, bodies: &str) -> f64 {
         space = {{ dimension = "{dimension}", cell = 0.1 }}
         time.end = 1
         materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
-        materials.clay = {{ density = 1000, von_mises = {{ young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e5 }} }}
+        materials.clay.density = 1000
+        materials.clay.von_mises = {{ young_modulus = 1e6, poisson_ratio = 0.3, yield_stress = 1e5 }}
         contact = [{{ friction = 0.3 }}]
         {bodies}
         "#,
@@ -103,8 +104,8 @@ fn many_disks() {
     is_right(told_over_held("plane-strain", &(balls([12, 12, 0], 0.8) + &floor)));
 }
 
-/// Equal disks share what their cells look like. Each lies beside four others, and more of its points are near these than
-/// touch.
+/// Equal disks share what their cells look like. Each lies beside four others, and more of its points are near these
+/// than touch.
 #[test]
 fn equal_disks_side_by_side() {
     let disk = |i: usize| {

@@ -98,16 +98,19 @@ impl<V: Lanes> Elastic<V> {
         Elastic { law: law.map(V::splat), per_density: V::splat(V::Real::ONE / density) }
     }
 
-    /// -V P = -V sigma J F^-T, zero where the volume is, and whether all are sound. `fastest` becomes the larger of
-    /// itself and the squares of waves' speeds in undeformed lengths [m^2/s^2].
+    /// -V P = -V sigma J F^-T, zero where the volume is, and whether all are sound; in the plane F has a one beyond.
+    /// `fastest` becomes the larger of itself and the squares of waves' speeds in undeformed lengths [m^2/s^2].
     #[inline(always)]
     pub fn pulls<const D: usize>(&self, of: Matrix<V>, volume: V, fastest: &mut V) -> (Matrix<V>, bool) {
         let all = (1 << V::COUNT) - 1;
         let absent = V::ZERO.at_least(volume) & all;
         let mut deformation = of;
+        if const { D == 2 } {
+            deformation.0[2][2] = V::ONE;
+        }
         if absent != 0 {
             let unit = |i: usize, a: usize| if i == a { V::ONE } else { V::ZERO };
-            deformation = Matrix::from_fn(|i, a| V::select(absent, unit(i, a), of.0[i][a]));
+            deformation = Matrix::from_fn(|i, a| V::select(absent, unit(i, a), deformation.0[i][a]));
         }
         let cofactor = cofactor::<V, D>(&deformation);
         let mut jacobian = deformation.0[0][0] * cofactor.0[0][0];
@@ -182,7 +185,7 @@ impl<V: Lanes<Real: Laned>, const D: usize> Whole<V, D> {
         &self,
         (table, block): (&Table<V::Real, D>, &Block),
         offsets: &[u32],
-        [places, forces]: [&mut Rows<D>; 2],
+        (places, forces): (&Rows<D>, &mut Rows<D>),
         fastest: &mut V,
     ) -> bool {
         let volumes = table.volumes(block);
@@ -255,8 +258,7 @@ impl<V: Lanes<Real: Laned>, const D: usize> Whole<V, D> {
     /// Turns F of a particle of each cell into -V P, zero where the volume is, and tells whether all are sound.
     #[inline(always)]
     fn respond(&self, own: &mut AtSites<V>, p: usize, volume: V, fastest: &mut V) -> bool {
-        let unit = |i: usize, a: usize| if i == a { V::ONE } else { V::ZERO };
-        let deformation = Matrix::from_fn(|i, a| if i < D && a < D { own[i][a][p] } else { unit(i, a) });
+        let deformation = Matrix::from_fn(|i, a| own[i][a][p]);
         let (pulls, sound) = self.elastic.pulls::<D>(deformation, volume, fastest);
         for i in 0..D {
             for a in 0..D {

@@ -52,8 +52,8 @@ pub enum Asked {
 /// x_p = sum N_I x_I             v_p = sum N_I v_I
 /// ```
 ///
-/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for. Forces and wave
-/// have the same bits whatever is asked for.
+/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for. Forces and
+/// wave have the same bits whatever is asked for.
 pub fn strain<T: Laned, const D: usize>(
     interior: &mut Interior<D>,
     table: &Table<T, D>,
@@ -176,10 +176,10 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
             let table = self.table;
             if !table.blocks.is_empty() {
                 let whole = Whole::<V::Register, D>::new(form, law, density);
-                let mut places = Rows::places(&self.interior.places);
+                let places = Rows::places(&self.interior.places);
                 let mut forces = Rows::forces(form.nodes());
                 for block in &table.blocks {
-                    let rows = [&mut places, &mut forces];
+                    let rows = (&places, &mut forces);
                     sound &= whole.strain((table, block), &form.offsets, rows, &mut fastest);
                 }
                 forces.add_to(&mut self.interior.forces);
@@ -214,10 +214,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
             if first >= volumes.len() {
                 break;
             }
-            let mut own = self.deformation::<V::Register>((number, cell, first));
-            if const { D == 2 } {
-                own.0[2][2] = V::Register::ONE;
-            }
+            let own = self.deformation::<V::Register>((number, cell, first));
             let volume =
                 V::Register::from_fn(|lane| volumes.get(first + lane).map_or(T::ZERO, |&v| T::of(v)));
             let (here, all) = elastic.pulls::<D>(own, volume, fastest);

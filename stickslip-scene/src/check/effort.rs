@@ -38,12 +38,12 @@ pub struct OwnGridWork {
     pub step: Work,
 }
 
-// In particles, which by `MachineSpeed::default` are microseconds of one core, in the plane and in space. Measured on a
-// virtual machine with two cores of an AMD EPYC with AVX2, other work beside it, in November 2026: 36 to 12,500 disks of
-// four to eight cells, 8 to 100 balls of five to eight, squares of 100 cells and cubes of 10 to 40, apart and packed. By
-// the times of "stress update", "contact" and "outputs" in run.json of `run --threads 1`, times the share of the
-// processor that the run had. Many small bodies take up to twice as long where they do not fit into caches, and half as
-// long where they do.
+// In particles, which by `MachineSpeed::default` are microseconds of one core, in the plane and in space. Measured on
+// a virtual machine with two cores of an AMD EPYC with AVX2, other work beside it, in November 2026: 36 to 12,500
+// disks of four to eight cells, 8 to 100 balls of five to eight, squares of 100 cells and cubes of 10 to 40, apart and
+// packed. By the times of "stress update", "contact" and "outputs" in run.json of `run --threads 1`, times the share
+// of the processor that the run had. Many small bodies take up to twice as long where they do not fit into caches, and
+// half as long where they do.
 
 /// A cell in the pass over particles, however many it has, by laws that take roots and products alone.
 const CELL: [f64; 2] = [0.3, 1.3];
