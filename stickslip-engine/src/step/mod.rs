@@ -224,9 +224,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.account_springs(dt); //                              and of springs
         Ok(())
     }
+}
 
-    /// A step, at most so long, and how long it was [s].
-    fn take_step(&mut self, longest: f64) -> Result<f64, StepError> {
+impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
+    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
+        let step = self.step_unseen(longest);
+        self.show();
+        step
+    }
+
+    fn step_unseen(&mut self, longest: f64) -> Result<f64, StepError> {
         *self.workspace.totals.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let time = self.state.time;
         let stable = self.stable();
@@ -255,21 +262,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.remove_leavers();
         self.among.iter_mut().zip(begun).for_each(|(among, begun)| among.end(begun));
         Ok(dt)
-    }
-}
-
-impl<T: Laned, const D: usize> Simulation for Engine<T, D> {
-    fn step(&mut self, longest: f64) -> Result<f64, StepError> {
-        self.workspace.unseen = false;
-        let step = self.take_step(longest);
-        // A step that fails may leave some behind.
-        self.show_references();
-        step
-    }
-
-    fn step_unseen(&mut self, longest: f64) -> Result<f64, StepError> {
-        self.workspace.unseen = true;
-        self.take_step(longest)
     }
 
     fn show(&mut self) {

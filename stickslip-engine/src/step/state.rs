@@ -185,8 +185,6 @@ pub struct Workspace<T, const D: usize> {
     pub neighbours: Neighbours<D>,
     /// What of bodies on the common grid is near their surfaces.
     pub skin: Skin,
-    /// Whether nobody looks at the particles after the step.
-    pub unseen: bool,
     /// The signal that these bodies allow, if there are any [m/s].
     pub reference_signal: Option<f64>,
     /// What pairs of bodies did in the step, use by use of contact.
@@ -230,7 +228,6 @@ impl<T, const D: usize> Workspace<T, D> {
             reference_touching: Touching::default(),
             neighbours: Neighbours::default(),
             skin: Skin::default(),
-            unseen: false,
             reference_signal: None,
             touches: Default::default(),
             weights: Vec::new(),

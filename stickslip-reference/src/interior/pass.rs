@@ -36,12 +36,10 @@ pub struct Straining<T> {
 /// What the particles are asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Asked {
-    /// Forces on the nodes: particles of elastic bodies stay behind, see [`Found`]; others take part in everything.
+    /// Forces on the nodes. Particles of elastic bodies stay behind; others take their state as well.
     Forces,
     /// What somebody sees who looks at particles that stayed behind: forces stay as they are.
     State,
-    /// Both.
-    Everything,
 }
 
 /// Lets the particles take the deformation that the nodes' places say, and the stress of their law, and adds up the
@@ -52,8 +50,7 @@ pub enum Asked {
 /// x_p = sum N_I x_I             v_p = sum N_I v_I
 /// ```
 ///
-/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for. Forces and
-/// wave have the same bits whatever is asked for.
+/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for.
 pub fn strain<T: Laned, const D: usize>(
     interior: &mut Interior<D>,
     table: &Table<T, D>,
@@ -136,21 +133,19 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
 
     #[inline(always)]
     fn cells<V: Lanes<Real = T>>(&mut self) {
-        let form = self.interior.form.clone();
-        if self.asked != Asked::State {
+        let (form, elastic) = (self.interior.form.clone(), self.elastic());
+        let pushes = self.asked == Asked::Forces;
+        if pushes {
             self.interior.forces.fill(Vector::ZERO);
+            // If one has a fault, who that is is found one by one.
+            if let Some(law) = elastic
+                && self.pull::<V>(&form, &law)
+            {
+                return;
+            }
+        } else if elastic.is_none() {
+            return;
         }
-        let pushes = match (self.elastic(), self.asked) {
-            (None, Asked::State) => return,
-            (None, _) => true,
-            (Some(_), Asked::State) => false,
-            (Some(law), asked) => match self.pull::<V>(&form, &law) {
-                true if asked == Asked::Forces => return,
-                true => false,
-                // Who has the fault is found one by one.
-                false => true,
-            },
-        };
         self.each::<V>(&form, pushes);
     }
 

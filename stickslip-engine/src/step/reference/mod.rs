@@ -308,9 +308,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pierced_reference().map_or(Ok(()), Err)?;
         self.watch.lap("contact", start);
         let start = Instant::now();
-        let asked = if self.workspace.unseen { Asked::Forces } else { Asked::Everything };
-        let found = self.strain_references(dt, asked);
-        self.state.references.behind = self.workspace.unseen;
+        let found = self.strain_references(dt, Asked::Forces);
         self.watch.lap("stress update", start);
         self.judge(found.iter().copied().fold(Found::NOTHING, Found::and).fault)?;
         let escaped = self.escaped_reference();
@@ -799,7 +797,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
         if !places.is_empty() {
             // Forces of the stress that this is.
-            self.strain_references(T::ZERO, Asked::Everything);
+            self.strain_references(T::ZERO, Asked::Forces);
+            self.state.references.behind = true;
+            self.show_references();
         }
     }
 
