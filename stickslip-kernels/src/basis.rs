@@ -1,10 +1,9 @@
 //! Shape functions: how much of a particle each grid node sees.
 //!
-//! A basis is a product over axes of one-dimensional functions, or a mean of such products over the corners of a
-//! particle's domain. Along an axis, a particle reaches `WIDTH` nodes from a base node on. Coordinates are in cells.
+//! A basis is a product over axes of one-dimensional functions. Along an axis, a particle reaches `WIDTH` nodes from a
+//! base node on. Coordinates are in cells.
 
 use crate::tensor::{Number, Real};
-use crate::transfer::{CornerTable, NodeTable};
 use std::fmt::Debug;
 use std::ops::{Index, IndexMut};
 
@@ -112,7 +111,7 @@ impl<N: Number, W: Width> ShapeFunctions<N, W> {
 #[derive(Clone, Copy, Debug)]
 pub struct BoxSide<N> {
     /// Half of its side [cells].
-    pub half: N,
+    half: N,
     /// One over its side [1/cell].
     per_side: N,
 }
@@ -140,12 +139,6 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
     /// ```
     const BOX_SPREAD: f64;
 
-    /// Whether it is a mean over the corners of domains that deform with their particles, and no product over the axes.
-    const CORNERS: bool = false;
-
-    /// Weights and slopes node by node, where it is no product; else nothing.
-    type Table<N: Number, const D: usize>: NodeTable<N, D>;
-
     /// Where the reach of a particle at `x` with the half side `half` begins: its base node is the next one below
     /// [cells].
     fn reach<N: Number>(x: N, half: N) -> N;
@@ -164,7 +157,7 @@ pub trait Basis<T: Real>: Copy + Send + Sync + 'static {
 /// Whether a basis is one of those that most runs take, in double precision: linear functions and GIMP. Its kernels have
 /// what would cost a build too much for all: in space AVX-512, in the plane groups of particles of several cells.
 pub const fn takes_most_time<T: Real, B: Basis<T>>() -> bool {
-    size_of::<T>() == 8 && !B::CORNERS && B::WIDTH <= 3
+    size_of::<T>() == 8 && B::WIDTH <= 3
 }
 
 /// Tent functions of the particle's centre (Sulsky, Chen and Schreyer 1994).
@@ -174,7 +167,6 @@ pub struct Linear;
 impl<T: Real> Basis<T> for Linear {
     type Width = Two;
     const BOX_SPREAD: f64 = 0.0;
-    type Table<N: Number, const D: usize> = ();
 
     #[inline(always)]
     fn reach<N: Number>(x: N, _half: N) -> N {
@@ -211,7 +203,6 @@ pub struct Gimp;
 impl<T: Real> Basis<T> for Gimp {
     type Width = Three;
     const BOX_SPREAD: f64 = 1.0 / 3.0;
-    type Table<N: Number, const D: usize> = ();
 
     #[inline(always)]
     fn reach<N: Number>(x: N, half: N) -> N {
@@ -248,7 +239,6 @@ pub struct Cubic;
 impl<T: Real> Basis<T> for Cubic {
     type Width = Four;
     const BOX_SPREAD: f64 = 1.0 / 6.0;
-    type Table<N: Number, const D: usize> = ();
 
     #[inline(always)]
     fn reach<N: Number>(x: N, half: N) -> N {
@@ -267,39 +257,6 @@ impl<T: Real> Basis<T> for Cubic {
             weight: [first, second, N::ONE - first - second - last, last],
             difference: [falling, N::ONE - falling - rising, rising, N::ZERO],
         }
-    }
-}
-
-/// Mean tent functions of the corners of a domain that deforms with its particle (CPDI): equations in
-/// `transfer/corners.rs`. Along the axes, of a domain that lies along them, with l half of its side and
-/// r = x - base in [l, 1 + l):
-///
-/// ```text
-/// S_0 = (max(1 + l - r, 0) + max(1 - l - r, 0)) / 2,   S_2 = max(r - 1 + l, 0) / 2,   S_1 = 1 - S_0 - S_2
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct Cpdi;
-
-impl<T: Real> Basis<T> for Cpdi {
-    type Width = Three;
-    const BOX_SPREAD: f64 = 1.0;
-    const CORNERS: bool = true;
-    type Table<N: Number, const D: usize> = CornerTable<N>;
-
-    #[inline(always)]
-    fn reach<N: Number>(x: N, half: N) -> N {
-        x - half
-    }
-
-    #[inline(always)]
-    fn shape<N: Number>(r: N, &BoxSide { half, per_side }: &BoxSide<N>) -> ShapeFunctions<N, Three> {
-        let before = (N::ONE + half) - r;
-        let near = before.min(half + half);
-        let beyond = (r - (N::ONE - half)).max(N::ZERO);
-        let first = N::HALF * near + (before - near);
-        let last = N::HALF * beyond;
-        let difference = [near * per_side, beyond * per_side, N::ZERO];
-        ShapeFunctions { weight: [first, N::ONE - first - last, last], difference }
     }
 }
 
@@ -332,11 +289,6 @@ mod tests {
     #[test]
     fn gimp_reproduces_linear_fields() {
         reproduces_linear_fields::<Gimp>(HALF_SIDES);
-    }
-
-    #[test]
-    fn corners_reproduce_linear_fields() {
-        reproduces_linear_fields::<Cpdi>(HALF_SIDES);
     }
 
     #[test]
@@ -415,7 +367,6 @@ mod tests {
     fn all_spread_as_stated() {
         spreads_over_the_nodes::<Linear>(&HALF_SIDES);
         spreads_over_the_nodes::<Gimp>(&HALF_SIDES);
-        spreads_over_the_nodes::<Cpdi>(&HALF_SIDES);
         spreads_over_the_nodes::<Cubic>(&[1.0]);
     }
 

@@ -3,7 +3,7 @@
 //! Passes call it once a tile, contact detection once a body and block, loads once a point. All else of the engine is
 //! compiled once for each dimension and precision, not for each basis as well.
 
-use crate::basis::{Basis, Cpdi, Cubic, Gimp, Linear};
+use crate::basis::{Basis, Cubic, Gimp, Linear};
 use crate::grid::{Lattice, addressable};
 use crate::lanes::Laned;
 use crate::matter::{Gyration, Matter};
@@ -15,8 +15,8 @@ use crate::surroundings::{SumAround, sum_around};
 use crate::tensor::Vector;
 use crate::totals::{TotalSums, Totals, TurningSums, total_sums, turning_sums};
 
-/// Position of a particle and half the sides of its box [m].
-pub type Place<T, const D: usize> = (Vector<T, D>, Vector<T, D>);
+/// Position of a particle and half the side of its box [m].
+pub type Place<T, const D: usize> = (Vector<T, D>, T);
 
 /// The functions of one basis.
 pub struct Kernels<T, const D: usize> {
@@ -74,7 +74,6 @@ impl<T: Laned, const D: usize> Kernels<T, D> {
             // Boxes of a cell: see `Gimp`.
             BasisKind::Gimp | BasisKind::Spline => const { &Self::by::<Gimp>() },
             BasisKind::Cubic => const { &Self::by::<Cubic>() },
-            BasisKind::Cpdi => const { &Self::by::<Cpdi>() },
         }
     }
 
@@ -84,7 +83,6 @@ impl<T: Laned, const D: usize> Kernels<T, D> {
             BasisKind::Linear => const { &Self::naive_by::<Linear>() },
             BasisKind::Gimp | BasisKind::Spline => const { &Self::naive_by::<Gimp>() },
             BasisKind::Cubic => const { &Self::naive_by::<Cubic>() },
-            BasisKind::Cpdi => const { &Self::naive_by::<Cpdi>() },
         }
     }
 

@@ -3,8 +3,8 @@
 use crate::basis::Basis;
 use crate::grid::Lattice;
 use crate::matter::Particle;
-use crate::tensor::{Matrix, Real, Vector};
-use crate::transfer::{NodeTable, extent, offsets};
+use crate::tensor::{Real, Vector};
+use crate::transfer::offsets;
 
 /// F (X_s - X_p), where the point was drawn at `drawn` from the particle [m].
 pub fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, drawn: &[f64; 3]) -> Vector<T, D> {
@@ -14,29 +14,22 @@ pub fn arm<T: Real, const D: usize>(particle: &Particle<T, D>, drawn: &[f64; 3])
 
 /// How [`nodes_of`] is called.
 pub type NodesOf<T, const D: usize> =
-    fn(&Lattice<T, D>, (&Particle<T, D>, &Matrix<T>), &[f64; 3], &mut dyn FnMut([i32; D], [T; 2]));
+    fn(&Lattice<T, D>, &Particle<T, D>, &[f64; 3], &mut dyn FnMut([i32; D], [T; 2]));
 
-/// Takes the nodes that move a point of a particle whose domain has these half edges [m], each with its S_i and N_i
-/// [-]; the point was drawn at `drawn` from the particle.
+/// Takes the nodes that move a point of a particle, each with its S_i and N_i [-]; the point was drawn at `drawn` from
+/// the particle.
 pub fn nodes_of<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
-    (particle, edges): (&Particle<T, D>, &Matrix<T>),
+    particle: &Particle<T, D>,
     drawn: &[f64; 3],
     take: &mut dyn FnMut([i32; D], [T; 2]),
 ) {
     let x = lattice.cells(particle.position);
-    let half = lattice.half_sides(extent(edges));
-    let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
-    let r = Vector::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
-    let table = B::Table::<T, D>::new(&r, &(*edges * lattice.per_cell));
+    let half = lattice.seen_half_side(particle.half_width);
+    let axes: [_; D] = std::array::from_fn(|i| B::axis(x[i], half));
     let arm = arm::<T, D>(particle, drawn) * lattice.per_cell;
-    for (offset, n) in offsets::<D>(B::WIDTH).zip(0..) {
+    for offset in offsets::<D>(B::WIDTH) {
         let node = std::array::from_fn(|i| axes[i].base + offset[i] as i32);
-        if B::CORNERS {
-            let own = table.weight(n);
-            take(node, [own, (0..D).fold(own, |sum, i| sum + table.slope(n, i) * arm[i])]);
-            continue;
-        }
         let weight = |i: usize| axes[i].shape.weight[offset[i]];
         let except =
             |skip: usize| (0..D).filter(|&i| i != skip).fold(T::ONE, |product, i| product * weight(i));

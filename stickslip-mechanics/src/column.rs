@@ -115,12 +115,8 @@ pub const TEMPERATURE: &str = "temperature";
 /// Relative growth by the heating of the last step.
 pub const THERMAL_STRAIN_STEP: &str = "thermal_strain_step";
 
-/// Half the edges of the domain as which the nodes see a particle, where it deforms with the particle.
-pub const HALF_EDGES: &str = "half_edges";
-
 /// Names of the columns that only some bodies have, whatever their law.
-const OF_SOME: [&str; 6] =
-    [STRAIN_RATE, BULK_VISCOSITY, INITIAL_STRETCH, TEMPERATURE, THERMAL_STRAIN_STEP, HALF_EDGES];
+const OF_SOME: [&str; 5] = [STRAIN_RATE, BULK_VISCOSITY, INITIAL_STRETCH, TEMPERATURE, THERMAL_STRAIN_STEP];
 
 /// Names of the columns that every file of particles may have.
 pub fn in_files() -> impl Iterator<Item = &'static str> {

@@ -11,9 +11,6 @@ pub enum BasisKind {
     /// Tent functions averaged over the particle's undeformed box (uniform GIMP; Bardenhagen and Kober 2004).
     #[default]
     Gimp,
-    /// Mean tent functions of the corners of a domain that deforms with the particle (convected particle domain
-    /// interpolation; Sadeghirad, Brannon and Burghardt 2011).
-    Cpdi,
     /// Quadratic B-splines of the particle's centre (Steffen, Kirby and Berzins 2008).
     Spline,
     /// Cubic ones.

@@ -20,7 +20,6 @@ pub static KEYS: &[Key] = &[
         name: "basis",
         words: &[
             ("gimp", "tent functions averaged over the particle's box"),
-            ("cpdi", "mean tent functions of the corners of a domain that deforms with the particle"),
             ("linear", "tent functions at the particle's centre"),
             ("spline", "quadratic B-splines of the particle's centre"),
             ("cubic", "cubic B-splines of the particle's centre"),

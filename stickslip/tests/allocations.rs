@@ -111,7 +111,7 @@ fn balls(speed: f64) -> String {
 fn steps_take_no_memory() {
     let cube = |speed| block("cube", [0.0; 3], [speed, 0.6 * speed, 0.3 * speed]);
     let blocks = |speed: f64| cube(0.0) + &block("other", [0.0, 0.2, 0.0], [speed, -0.05 * speed, 0.0]);
-    for basis in ["linear", "gimp", "cpdi", "spline", "cubic"] {
+    for basis in ["linear", "gimp", "spline", "cubic"] {
         for (name, bodies) in [("cube", cube(1e-3)), ("blocks", blocks(1e-3)), ("balls", balls(1e-3))] {
             let count = allocations(&bodies, (basis, "surface", OPEN), 1, [20, 20]);
             assert_eq!(count, 0, "{name} that hardly move, {basis}");

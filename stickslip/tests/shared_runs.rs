@@ -125,7 +125,6 @@ gravity = [0, 0, -9.81]
 dimension = "3d"
 interior = "grid"
 cell = 0.125
-basis = "cpdi"
 [time]
 end = 0.2
 [materials.rubber]

@@ -80,7 +80,7 @@ impl Puppet {
             TracedParticle {
                 number: number as u32,
                 half_width: 0.5 * SPACING,
-                half_sides: [0.5 * SPACING, 0.5 * SPACING, 0.0],
+                half_side: 0.5 * SPACING,
                 position: [position[0], position[1], 0.0],
                 velocity: [velocity[0], velocity[1], 0.0],
                 deformation: [[f[0][0], f[0][1], 0.0], [f[1][0], f[1][1], 0.0], [0.0, 0.0, 1.0]],

@@ -4,7 +4,7 @@
 //! # Set-up
 //! - The six scenes of the paper that [`PAPER`] names, coarse: spheres with R/4, disks with D/40.
 //! - A strip of rubber of four cells' width and 20 cells' length that is pulled to 1.6 of its length, slowly (book,
-//!   chapter 17), by `gimp` and by `cpdi`.
+//!   chapter 17), by `gimp`.
 //! - The scenes of the folder `sound`: rigid bodies at rest on friction and on each other, a block at rest by each
 //!   bond, a gripper that closes from a first touch on, flat bars that strike each other. Their residuals are round-off,
 //!   or a contact that is not resolved at first and is later.
@@ -16,7 +16,7 @@
 //! No warning of any kind on the paper's scenes and the sound ones; what contacts lack in resolution is told apart from
 //! them, and is nothing in the sound ones. The body that meets itself is told by `self-contact`. The strip and the disk
 //! are told by `tearing` and `strain` where they tear, the strip by `gimp`, the disk by `gimp` and `linear`, and by
-//! neither of these where they hold, by `cpdi`, the disk by `spline` too.
+//! neither of these where they hold, the disk by `spline`.
 
 use std::path::Path;
 use stickslip::run::{self, RunOptions};
@@ -124,33 +124,27 @@ fn a_body_that_meets_itself_on_the_grid_is_told() {
 
 #[test]
 fn a_strip_that_is_pulled_until_the_grid_tears_it_is_told() {
-    let pulled = |basis: &str| {
-        let text = format!(
-            r#"
-            space = {{ dimension = "plane-stress", interior = "grid", cell = 0.1, basis = "{basis}" }}
-            time.end = 160
-            damping.viscous = 0.3
-            [materials.rubber]
-            density = 1
-            neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }}
-            [[bodies]]
-            name = "strip"
-            material = "rubber"
-            shape.box = {{ min = [0, 0], max = [2, 0.4] }}
-            [[supports]]
-            body = "strip"
-            on = "x_min"
-            displacement = [0, "free"]
-            [[supports]]
-            body = "strip"
-            on = "x_max"
-            displacement = ["3 * t / 400", "free"]
-            "#
-        );
-        told(basis, &text)
-    };
-    assert_eq!(pulled("gimp"), [true, true]);
-    assert_eq!(pulled("cpdi"), [false, false]);
+    let text = r#"
+        space = { dimension = "plane-stress", interior = "grid", cell = 0.1 }
+        time.end = 160
+        damping.viscous = 0.3
+        [materials.rubber]
+        density = 1
+        neo_hookean = { young_modulus = 1, poisson_ratio = 0.3 }
+        [[bodies]]
+        name = "strip"
+        material = "rubber"
+        shape.box = { min = [0, 0], max = [2, 0.4] }
+        [[supports]]
+        body = "strip"
+        on = "x_min"
+        displacement = [0, "free"]
+        [[supports]]
+        body = "strip"
+        on = "x_max"
+        displacement = ["3 * t / 400", "free"]
+        "#;
+    assert_eq!(told("gimp", text), [true, true]);
 }
 
 #[test]
@@ -182,7 +176,5 @@ fn a_disk_that_is_thrown_hard_is_told_where_it_tears() {
     for basis in ["gimp", "linear"] {
         assert_eq!(thrown(basis), [true, true], "{basis}");
     }
-    for basis in ["cpdi", "spline"] {
-        assert_eq!(thrown(basis), [false, false], "{basis}");
-    }
+    assert_eq!(thrown("spline"), [false, false]);
 }

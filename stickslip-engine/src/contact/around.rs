@@ -38,16 +38,14 @@ impl<T: Real, const D: usize> Near<'_, T, D> {
             for offset in offsets::<D>(self.kernels.width) {
                 let cell = std::array::from_fn(|i| image.node[i] - offset[i] as i32);
                 for &index in self.active.particles_in(body, cell) {
-                    let particles = &self.bodies[body].particles;
-                    let particle = &particles.get(index as usize);
+                    let particle = &self.bodies[body].particles.get(index as usize);
                     let arm = particle.position - seen;
-                    let sides = particles.half_sides(index as usize);
-                    let half_box = |i: usize| match self.kernels.width {
+                    let half_box = match self.kernels.width {
                         WIDTH_OF_POINTS => T::ZERO,
-                        _ => self.lattice.half_box(sides[i]),
+                        _ => self.lattice.half_box(particle.half_width),
                     };
-                    let reach = |i: usize| self.lattice.cell + half_box(i);
-                    if (0..D).all(|i| arm[i].abs() < reach(i)) {
+                    let reach = self.lattice.cell + half_box;
+                    if (0..D).all(|i| arm[i].abs() < reach) {
                         f(Vector::from_fn(|i| arm[i] * image.sign[i]), particle, mirror);
                     }
                 }

@@ -624,8 +624,8 @@ pub struct TracedParticle {
     pub number: u32,
     /// Half the side of its undeformed box [m].
     pub half_width: f64,
-    /// Half the sides of the box as which the nodes see it; along no axis of the plane none [m].
-    pub half_sides: [f64; 3],
+    /// Half the side of the box as which the nodes see it [m].
+    pub half_side: f64,
     /// Position [m].
     pub position: [f64; 3],
     /// Velocity [m/s].

@@ -24,7 +24,7 @@ use crate::lanes::{Laned, Processor};
 use crate::load::{LoadPoints, LoadSums, SpringPoints};
 use crate::material::{BadConstants, Material};
 use crate::natural;
-use crate::particles::{DOMAINS, OwnColumns, Particles, stress_entries};
+use crate::particles::{OwnColumns, Particles, stress_entries};
 use crate::ranks::Ranks;
 use crate::rigid::{MassProperties, RigidMotion, longest_step};
 use crate::scene::{
@@ -233,7 +233,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
         let cell = scene.discretization.cell;
         let kernels = T::kernels(scene.discretization.basis);
         let half_side = match scene.discretization.basis {
-            BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi => None,
+            BasisKind::Linear | BasisKind::Gimp => None,
             BasisKind::Spline => Some(0.5),
             BasisKind::Cubic => Some(1.0),
         };
@@ -594,8 +594,8 @@ pub fn heated_bodies(scene: &Scene) -> HashSet<usize> {
     scene.loads.iter().filter(heats).map(|load| load.body).collect()
 }
 
-/// The columns that the particles of a body have for its law, its transfer, damping, initial stress and heat, and its
-/// basis: rigid ones none.
+/// The columns that the particles of a body have for its law, its transfer, damping, initial stress and heat: rigid
+/// ones none.
 pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumns {
     if body.is_rigid() {
         return OwnColumns::default();
@@ -608,7 +608,6 @@ pub fn own_columns(scene: &Scene, body: &scene::Body, heated: bool) -> OwnColumn
         transfer: crate::transfer::columns(scene.time.transfer),
         viscosity,
         natural,
-        domains: if scene.discretization.basis == BasisKind::Cpdi { DOMAINS } else { &[] },
     }
 }
 

@@ -8,7 +8,7 @@ use super::build::spin;
 use super::loads::{NOWHERE, find_carriers};
 use crate::Kernels;
 use crate::body::{Body, Particle, TotalSums, Totals, TurningSums};
-use crate::column::{HALF_EDGES, INITIAL_STRETCH};
+use crate::column::INITIAL_STRETCH;
 use crate::door::{RestoreError, SavedBody, SavedColumn, SavedState};
 use crate::exact::ExactSum;
 use crate::lanes::Laned;
@@ -112,8 +112,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         if saved.of_snapshot {
             complete(self.kernels, &mut here, velocities, ranks)?;
         }
-        let most = T::HALF * self.settings.lattice.cell;
-        here.into_iter().for_each(|body| finish(body, velocities, most));
+        here.into_iter().for_each(|body| finish(body, velocities));
         Ok(carried)
     }
 
@@ -311,15 +310,15 @@ fn carried_particles<T: Laned, const D: usize>(
     if fresh.len() != count || !same {
         return Err("has particles that are numbered twice".to_string());
     }
-    // What carries velocities follows from the transfer, and domains from F by the basis; both may be others.
-    let of_scheme = |name: &str| {
+    // What carries velocities follows from the transfer, which may be another.
+    let of_transfer = |name: &str| {
         let of_motion = |way: &Transfer| columns_of(*way).iter().any(|own| own.column.name == name);
-        name == HALF_EDGES || TRANSFERS.iter().any(of_motion)
+        TRANSFERS.iter().any(of_motion)
     };
     let known = |name: &str| fresh.described().any(|(_, column)| column.name == name);
     let forgotten = saved.columns.iter().find(|saved| {
         let remembers = saved.bytes.iter().any(|&byte| byte != 0);
-        remembers && !known(&saved.name) && !of_scheme(&saved.name)
+        remembers && !known(&saved.name) && !of_transfer(&saved.name)
     });
     if let Some(SavedColumn { name, .. }) = forgotten {
         return Err(format!(
@@ -474,7 +473,7 @@ fn first_of_each(
 }
 
 /// Gives particles what follows from their body: of another density m = rho V / J, and of a rigid one its motion.
-fn finish<T: Laned, const D: usize>(body: &mut Body<T, D>, velocities: StartVelocities, most: T) {
+fn finish<T: Laned, const D: usize>(body: &mut Body<T, D>, velocities: StartVelocities) {
     let Some(body) = body.here_mut() else { return };
     for i in 0..body.particles.len() {
         let mut particle = body.particles.get(i);
@@ -488,7 +487,6 @@ fn finish<T: Laned, const D: usize>(body: &mut Body<T, D>, velocities: StartVelo
         }
         body.particles.set(i, &particle);
     }
-    body.particles.deform_domains(most);
     if velocities == StartVelocities::Zero && body.motion.is_none() {
         body.particles.stop();
     }

@@ -317,7 +317,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 return;
             }
             let mut particle = body.particles.get(place as usize);
-            let edges = body.particles.edges(place as usize);
             let (mut velocity, mut moves) = (Vector::ZERO, Vector::ZERO);
             // A rigid body feels the force itself, see `mechanism/`.
             let moved_by_nodes = !body.is_rigid();
@@ -330,7 +329,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
             };
             if moved_by_nodes {
-                nodes_of(lattice, (&particle, &edges), &point.arm, &mut take);
+                nodes_of(lattice, &particle, &point.arm, &mut take);
             }
             match ahead {
                 None => loaded.before = place_of(&particle, point),

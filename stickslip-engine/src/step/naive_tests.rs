@@ -99,7 +99,7 @@ fn largest_difference(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
 #[test]
 fn one_lane_and_several_do_what_the_equations_say() {
     for dimension in ["plane-strain", "3d"] {
-        for (basis, steps) in [("gimp", 40), ("cpdi", 40), ("linear", 12), ("spline", 40), ("cubic", 40)] {
+        for (basis, steps) in [("gimp", 40), ("linear", 12), ("spline", 40), ("cubic", 40)] {
             for update in ["first", "last", "modified-last"] {
                 let kinds = ["flip", "rflip", "pic", "apic", "xpic"].map(|transfer| (transfer, "own"));
                 for (transfer, volume_change) in kinds.into_iter().chain([("rflip", "averaged")]) {

@@ -173,7 +173,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                     NOWHERE => continue,
                     place => place as usize,
                 };
-                let seen = (&body.particles.get(place), &body.particles.edges(place));
+                let carrier = body.particles.get(place);
                 let share = T::of(point.measure / end.measure);
                 let mut take = |node: [i32; D], [_, weight]: [T; 2]| {
                     let Some((index, mirrored)) = find(active, boundary, (end.body, node)) else { return };
@@ -189,7 +189,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                         found.push(([e as u32, number], node, pull.space()));
                     }
                 };
-                (self.kernels.nodes_of)(&self.settings.lattice, seen, &point.arm, &mut take);
+                (self.kernels.nodes_of)(&self.settings.lattice, &carrier, &point.arm, &mut take);
             }
         }
         if let Some(among) = &self.among {

@@ -42,7 +42,7 @@ pub(super) struct Unbounded<const D: usize> {
 /// How far functions of a basis reach at most [cells].
 pub(super) fn reach(basis: BasisKind) -> f64 {
     match basis {
-        BasisKind::Linear | BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline => 1.5,
+        BasisKind::Linear | BasisKind::Gimp | BasisKind::Spline => 1.5,
         BasisKind::Cubic => 2.0,
     }
 }

@@ -536,21 +536,21 @@ fn move_rigid_body<T: Laned, const D: usize>(
         fastest = fastest.max(speed);
         // Without a grid there are no lists of cells.
         if is_listed {
-            let home = |place| (kernels.home)(lattice, (place, body.particles.half_sides(p)));
+            let home = |place| (kernels.home)(lattice, (place, body.particles.half_width(p)));
             moved_on += u32::from(home(moved) != home(start));
         }
     }
     // No wave runs in a rigid body.
     let mut found = Found { fault: None, signal: signal_speed([T::ZERO, fastest]) };
     let escapes =
-        |corner: &Vector<T, D>| kernels.escaped((*corner, body.particles.half_sides(0)), lattice, domain);
+        |corner: &Vector<T, D>| kernels.escaped((*corner, body.particles.half_width(0)), lattice, domain);
     if !lost.is_empty() || count > 0 && bounds.iter().any(escapes) {
         for p in 0..count {
-            let (position, half_sides) = body.particles.place(p);
+            let place = body.particles.place(p);
             let kind = if lost.binary_search(&p).is_ok() {
                 Some(FaultKind::NotFinite)
             } else {
-                kernels.escaped((position, half_sides), lattice, domain).then_some(FaultKind::Escaped)
+                kernels.escaped(place, lattice, domain).then_some(FaultKind::Escaped)
             };
             let own = body.particles.numbers()[p];
             let fault = kind.map(|kind| ParticleFault { body: number, particle: p, number: own, kind });

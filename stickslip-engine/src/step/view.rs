@@ -435,14 +435,13 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
 
     fn trace(&self, body: usize, wanted: &[u32]) -> Vec<TracedParticle> {
         let particles = &self.shown()[body].particles;
-        let cell = self.settings.lattice.cell;
+        let lattice = &self.settings.lattice;
         let traced = |i: usize| {
             let particle = particles.get(i);
-            let seen = self.settings.lattice.half_sides(particles.half_sides(i));
             TracedParticle {
                 number: particle.number,
                 half_width: particle.half_width.f64(),
-                half_sides: (seen * cell).space(),
+                half_side: (lattice.seen_half_side(particle.half_width) * lattice.cell).f64(),
                 position: particle.position.space(),
                 velocity: particle.velocity.space(),
                 deformation: particle.deformation.0.map(|row| row.map(Real::f64)),

@@ -82,10 +82,10 @@ impl<T: Real, const D: usize> Lattice<T, D> {
         Lattice { origin, cell, per_cell: T::ONE / cell, half_side: None, periods: Periods::default() }
     }
 
-    /// Half the sides of the box as which the nodes see a particle with a box of these half sides [m], in cells.
+    /// Half the side of the box as which the nodes see a particle with a box of this half side [m], in cells.
     #[inline(always)]
-    pub fn half_sides(&self, half_sides: Vector<T, D>) -> Vector<T, D> {
-        self.half_side.map_or_else(|| half_sides * self.per_cell, |half| Vector([half; D]))
+    pub fn seen_half_side(&self, half_width: T) -> T {
+        self.half_side.unwrap_or_else(|| half_width * self.per_cell)
     }
 
     /// The same in metres.

@@ -6,7 +6,7 @@ mod tests;
 
 pub use rows::{Shown, fill_holes, number_of, write_number};
 
-use crate::column::{ColumnDescription, EVERY, HALF_EDGES, Kind, NUMBER, same};
+use crate::column::{ColumnDescription, EVERY, Kind, NUMBER, same};
 use crate::grid::Disjoint;
 use crate::material::{History, Keep, Recall, history_entries};
 use crate::matter::Particle;
@@ -14,7 +14,6 @@ use crate::natural::{self, Natural};
 use crate::pages::ask_for_large;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::threads::each_range;
-use crate::transfer::{convected_edges, extent};
 use std::ops::Range;
 
 /// Place of the first entry of a column of [`EVERY`], or, of a name that it does not have, of the history.
@@ -105,18 +104,13 @@ pub struct Particles<T, const D: usize> {
     viscosity: &'static [History],
     /// What initial stress and heat need.
     natural: &'static [History],
-    /// Domains that deform with their particles.
-    domains: &'static [History],
     /// Mass [kg] and half the side of the undeformed box [m] of every particle, where it is known that they are alike:
     /// then nobody needs to read these columns.
     alike: Option<[T; 2]>,
 }
 
-/// Half the edges of domains that deform with their particles, one in each column of the tensor [m].
-pub const DOMAINS: &[History] = &[History::new(HALF_EDGES, "m", Kind::Tensor)];
-
 /// Columns that not all bodies have: what a law remembers, behind that what a transfer carries, what bulk viscosity
-/// needs, what initial stress and heat need, and domains that deform.
+/// needs, and what initial stress and heat need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OwnColumns {
     /// Of the law.
@@ -127,15 +121,12 @@ pub struct OwnColumns {
     pub viscosity: &'static [History],
     /// Of the state without stress, see [`crate::natural`].
     pub natural: &'static [History],
-    /// Of the domains, if they deform with their particles.
-    pub domains: &'static [History],
 }
 
 impl OwnColumns {
     /// All of them.
     fn all(self) -> impl Iterator<Item = &'static History> {
-        let first = self.history.iter().chain(self.transfer).chain(self.viscosity);
-        first.chain(self.natural).chain(self.domains)
+        self.history.iter().chain(self.transfer).chain(self.viscosity).chain(self.natural)
     }
 
     /// Their entries.
@@ -144,7 +135,6 @@ impl OwnColumns {
             + history_entries(self.transfer, dimension)
             + history_entries(self.viscosity, dimension)
             + history_entries(self.natural, dimension)
-            + history_entries(self.domains, dimension)
     }
 }
 
@@ -211,7 +201,7 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let columns = vec![T::ZERO; stride * Self::columns_of(own)];
         ask_for_large(columns.as_ptr(), columns.len());
         let numbers = vec![0; 2 * stride];
-        let OwnColumns { history, transfer, viscosity, natural, domains } = own;
+        let OwnColumns { history, transfer, viscosity, natural } = own;
         let mut particles = Particles {
             len: count,
             guests: 0,
@@ -223,7 +213,6 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer,
             viscosity,
             natural,
-            domains,
             alike: None,
         };
         for i in 0..count {
@@ -238,12 +227,6 @@ impl<T: Real, const D: usize> Particles<T, D> {
             for entry in 0..remembered.column.kind.entries(D) {
                 particles.columns[column * stride..][..count].fill(T::of(remembered.start_of(D, entry)));
                 column += 1;
-            }
-        }
-        for (column, [row, edge]) in particles.view().domain_columns().zip(deformation_entries(D)) {
-            for i in 0..count {
-                let half_width = particles.line(ColumnStart::<D>::HALF_WIDTH)[i];
-                particles.line_mut(column)[i] = if row == edge { half_width } else { T::ZERO };
             }
         }
         particles.compare();
@@ -281,7 +264,6 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: self.transfer,
             viscosity: self.viscosity,
             natural: self.natural,
-            domains: self.domains,
         }
     }
 
@@ -352,11 +334,11 @@ impl<T: Real, const D: usize> Particles<T, D> {
         Particle { number: self.numbers[self.first_number() + i], ..unsafe { self.view().get(i) } }
     }
 
-    /// Position [m] and half the sides of the box [m] of particle `i`.
+    /// Position [m] and half the side of the undeformed box [m] of particle `i`.
     #[inline]
-    pub fn place(&self, i: usize) -> (Vector<T, D>, Vector<T, D>) {
+    pub fn place(&self, i: usize) -> (Vector<T, D>, T) {
         let at = |column: usize| self.columns[self.first() + column * self.stride + i];
-        (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), self.half_sides(i))
+        (Vector::from_fn(|k| at(ColumnStart::<D>::POSITION + k)), self.half_width(i))
     }
 
     /// Where particle `i` was before its body deformed [m].
@@ -366,44 +348,10 @@ impl<T: Real, const D: usize> Particles<T, D> {
         Vector::from_fn(|k| at(ColumnStart::<D>::START + k))
     }
 
-    /// Half the sides of the box of particle `i`: the undeformed ones, or those of the box that holds its domain [m].
+    /// Half the side of the undeformed box of particle `i` [m].
     #[inline]
-    pub fn half_sides(&self, i: usize) -> Vector<T, D> {
-        if self.domains.is_empty() {
-            let half = self.columns[self.first() + ColumnStart::<D>::HALF_WIDTH * self.stride + i];
-            return Vector([half; D]);
-        }
-        self.domain_half_sides(i)
-    }
-
-    /// The same of a domain that deforms; apart, for the others are asked for often.
-    #[inline(never)]
-    fn domain_half_sides(&self, i: usize) -> Vector<T, D> {
-        extent(&self.edges(i))
-    }
-
-    /// Half the edges of the domain of particle `i`, one in each column: of the undeformed box, or of the domain that
-    /// deforms with it [m].
-    #[inline]
-    pub fn edges(&self, i: usize) -> Matrix<T> {
-        assert!(i < self.len + self.guests, "a particle of the body");
-        // SAFETY: in range, and borrowed for reading.
-        unsafe { self.view().edges(i) }
-    }
-
-    /// Lets domains that deform with their particles be those of their deformation; `most`: how far one reaches [m].
-    pub fn deform_domains(&mut self, most: T) {
-        let columns = self.view().domain_columns();
-        if columns.is_empty() {
-            return;
-        }
-        for i in 0..self.len() {
-            let particle = self.get(i);
-            let edges = convected_edges::<T, D>(&particle.deformation, particle.half_width, most);
-            for (column, [row, edge]) in columns.clone().zip(deformation_entries(D)) {
-                self.line_mut(column)[i] = edges.0[*row][*edge];
-            }
-        }
+    pub fn half_width(&self, i: usize) -> T {
+        self.columns[self.first() + ColumnStart::<D>::HALF_WIDTH * self.stride + i]
     }
 
     /// The state without stress of particle `i`, of a material with this expansion by temperature; `None` where that is
@@ -451,7 +399,6 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer: history_entries(self.transfer, D),
             viscosity: history_entries(self.viscosity, D),
             natural: history_entries(self.natural, D),
-            domains: history_entries(self.domains, D),
             alike: self.alike,
         }
     }
@@ -541,14 +488,13 @@ impl<T: Real, const D: usize> Particles<T, D> {
             transfer,
             viscosity,
             natural,
-            domains,
             alike,
         } = self;
         columns.clone_from(&other.columns);
         numbers.clone_from(&other.numbers);
         (*len, *guests, *stride, *later) = (other.len, other.guests, other.stride, other.later);
         (*history, *transfer) = (other.history, other.transfer);
-        (*viscosity, *natural, *domains) = (other.viscosity, other.natural, other.domains);
+        (*viscosity, *natural) = (other.viscosity, other.natural);
         *alike = other.alike;
     }
 
@@ -635,8 +581,6 @@ pub struct Columns<T, const D: usize> {
     viscosity: usize,
     /// Entries of what initial stress and heat need.
     natural: usize,
-    /// Entries of the domains.
-    domains: usize,
     /// Mass and half the side of the box of all particles, see [`Particles`].
     alike: Option<[T; 2]>,
 }
@@ -686,39 +630,13 @@ impl<T: Real, const D: usize> Columns<T, D> {
         first..first + self.natural
     }
 
-    /// Places of the columns of the domains, if these deform with their particles.
-    #[inline(always)]
-    pub fn domain_columns(&self) -> Range<usize> {
-        let first = self.natural_columns().end;
-        first..first + self.domains
-    }
-
-    /// Half the edges of the domain of particle `i`, see [`Particles::edges`] [m].
-    ///
-    /// # Safety
-    /// The particle must exist, and nobody may write to it meanwhile.
-    #[inline]
-    pub unsafe fn edges(&self, i: usize) -> Matrix<T> {
-        // SAFETY: the caller's.
-        let at = |column: usize| unsafe { *self.at(column, i) };
-        let columns = self.domain_columns();
-        let mut edges = Matrix::ZERO;
-        if columns.is_empty() {
-            (0..3).for_each(|k| edges.0[k][k] = at(ColumnStart::<D>::HALF_WIDTH));
-        }
-        for (column, &[row, edge]) in columns.zip(deformation_entries(D)) {
-            edges.0[row][edge] = at(column);
-        }
-        edges
-    }
-
     /// The entry of particle `i` in a column.
     ///
     /// # Safety
     /// The column and the particle must exist, and nobody may use the entry but by this pointer.
     #[inline(always)]
     pub unsafe fn at(&self, column: usize, i: usize) -> *mut T {
-        debug_assert!(column < self.domain_columns().end && i < self.stride, "an entry");
+        debug_assert!(column < self.natural_columns().end && i < self.stride, "an entry");
         // SAFETY: the caller's.
         unsafe { self.start.add(column * self.stride + i) }
     }

@@ -69,10 +69,9 @@ impl<T: Real, const D: usize> Particles<T, D> {
         let of_force = |entry: usize| {
             entry == Start::<D>::MASS || (Start::<D>::STRESS..Start::<D>::START).contains(&entry)
         };
-        let of_all = (0..ColumnStart::<D>::COUNT)
+        (0..ColumnStart::<D>::COUNT)
             .filter(move |&entry| !of_motion.contains(&entry))
-            .filter(move |&entry| shown == Shown::Everything || !of_force(entry));
-        of_all.chain(self.view().domain_columns())
+            .filter(move |&entry| shown == Shown::Everything || !of_force(entry))
     }
 
     fn write_entries(&self, particles: &[u32], entries: impl Iterator<Item = usize>, message: &mut Vec<u8>) {

@@ -11,8 +11,8 @@ use crate::particles::ColumnStart;
 use crate::signal::{no_faster, signal_speed};
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
 use crate::transfer::{
-    Apic, Group, Momentum, SETTLES_EVERY, ScatterTerms, Share, Start, TransferRule, VelocityState,
-    convected_edges, extent, has_spin, is_affine, of_transfer,
+    Apic, Group, Momentum, SETTLES_EVERY, ScatterTerms, Share, Start, TransferRule, VelocityState, has_spin,
+    is_affine, of_transfer,
 };
 use crate::viscosity::BulkViscosity;
 
@@ -71,14 +71,8 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
         Some(half) => V::splat(half),
         None => half_width * constants.per_cell,
     };
-    let mut sides = [BoxSide::new(half_side); D];
-    let mut edges = Matrix::ZERO;
-    if B::CORNERS {
-        edges = members.edges(half_width);
-        sides = sides_of(&edges, constants.per_cell);
-    }
-    let shape = (&sides, &(edges * constants.per_cell));
-    let group = Group::<V, D, B, S>::new(constants.in_cells(&position) - base, shape, start, members.count());
+    let side = BoxSide::new(half_side);
+    let group = Group::<V, D, B, S>::new(constants.in_cells(&position) - base, &side, start, members.count());
     let mut sound = Sound::EVERYTHING;
 
     let mut state =
@@ -249,12 +243,8 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
         let moved = position + flow * V::splat(dt);
         sound.require(finite(&moved.0), FaultKind::NotFinite);
         let cells = constants.in_cells(&moved);
-        if B::CORNERS {
-            edges = convected_edges::<V, D>(&deformation, half_width, V::HALF * constants.cell);
-            sides = sides_of(&edges, constants.per_cell);
-        }
         for i in 0..D {
-            let reach = B::reach(cells[i], sides[i].half);
+            let reach = B::reach(cells[i], half_side);
             inside &= reach.at_least(base[i]) & !reach.at_least(base[i] + V::ONE);
             if let Some([min, max]) = &constants.domain {
                 sound.require(moved[i].at_least(min[i]) & max[i].at_least(moved[i]), FaultKind::Escaped);
@@ -263,7 +253,7 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
         if !every::<V>(inside) {
             let far = V::splat(T::of(f64::from(crate::grid::MOST_CELLS - 1)));
             for i in 0..D {
-                let reach = B::reach(cells[i], sides[i].half);
+                let reach = B::reach(cells[i], half_side);
                 sound.require(reach.at_least(-far) & far.at_least(reach), FaultKind::Escaped);
             }
         }
@@ -275,9 +265,6 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
         }
         members.store_vector(ColumnStart::<D>::POSITION, &moved);
         members.give_back::<V>(ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY);
-        if B::CORNERS {
-            members.store_edges(&edges);
-        }
         let seen = (&natural, &deformation, jacobian);
         if !stiffens {
             modulus = wave_modulus(&constants.material, visit.matter.thickness, seen, &history);
@@ -358,17 +345,6 @@ pub fn group<T: Laned, V: Lanes<Real = T>, M: Machine<T>, const D: usize, B: Bas
         group.scatter::<M>(visit.window, &load);
     }
     Ok(inside)
-}
-
-/// Sides of the boxes that hold domains with these half edges [m].
-#[inline(always)]
-fn sides_of<V: Lanes, const D: usize>(edges: &Matrix<V>, per_cell: V) -> [BoxSide<V>; D] {
-    let reach = extent::<V, D>(edges);
-    let mut sides = [BoxSide::new(V::HALF); D];
-    for i in 0..D {
-        sides[i] = BoxSide::new(reach[i] * per_cell);
-    }
-    sides
 }
 
 /// Stiffness against the fastest wave, times J [Pa].

@@ -1,7 +1,6 @@
 //! The particles of a group in memory: side by side, or copied so that they are.
 
 use super::{FaultKind, Verbs};
-use crate::column::Kind;
 use crate::lanes::{Lanes, MOST_LANES, Numbers, prefetch};
 use crate::material::{Keep, MOST_HISTORY, Recall};
 use crate::natural::{self, Natural};
@@ -43,8 +42,6 @@ struct Reads {
     viscosity: usize,
     /// Entries of what initial stress and heat need.
     natural: usize,
-    /// Entries of the domains.
-    domains: usize,
 }
 
 impl Reads {
@@ -72,13 +69,12 @@ impl Reads {
                 0
             },
             natural: if verbs.update_stress || verbs.advect { columns.natural_columns().len() } else { 0 },
-            domains: columns.domain_columns().len(),
         }
     }
 
     /// All columns that are read.
     #[inline(always)]
-    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 12] {
+    fn columns<T: Real, const D: usize>(self, of: &Columns<T, D>) -> [Range<usize>; 11] {
         let only = |read: bool, columns: Range<usize>| if read { columns } else { 0..0 };
         [
             0..ColumnStart::<D>::SPIN,
@@ -92,7 +88,6 @@ impl Reads {
             of.transfer_columns().start..of.transfer_columns().start + self.transfer,
             of.viscosity_columns().start..of.viscosity_columns().start + self.viscosity,
             of.natural_columns().start..of.natural_columns().start + self.natural,
-            of.domain_columns(),
         ]
     }
 }
@@ -154,12 +149,8 @@ impl ParticleRuns {
 }
 
 /// Columns of a particle in space.
-const MOST_COLUMNS: usize = ColumnStart::<3>::HISTORY
-    + MOST_HISTORY
-    + stress_entries(3)
-    + 1
-    + natural::most_entries(3)
-    + Kind::Tensor.entries(3);
+const MOST_COLUMNS: usize =
+    ColumnStart::<3>::HISTORY + MOST_HISTORY + stress_entries(3) + 1 + natural::most_entries(3);
 
 impl<'a, T: Real, const D: usize> Members<'a, T, D> {
     /// Particles that lie side by side.
@@ -328,31 +319,6 @@ impl<'a, T: Real, const D: usize> Members<'a, T, D> {
             self.store(column, pressure);
         }
         self.give_back::<V>(self.columns.viscosity_columns());
-    }
-
-    /// Half the edges of the particles' domains, one in each column: of those that deform, or of boxes with this half
-    /// side [m].
-    #[inline(always)]
-    pub fn edges<V: Lanes<Real = T>>(&self, half_width: V) -> Matrix<V> {
-        let columns = self.columns.domain_columns();
-        if columns.is_empty() {
-            return Matrix::IDENTITY * half_width;
-        }
-        let mut edges = Matrix::ZERO;
-        for (k, &[row, edge]) in deformation_entries(D).iter().enumerate() {
-            edges.0[row][edge] = self.load(columns.start + k);
-        }
-        edges
-    }
-
-    /// Writes the edges of domains that deform.
-    #[inline(always)]
-    pub fn store_edges<V: Lanes<Real = T>>(&self, edges: &Matrix<V>) {
-        let columns = self.columns.domain_columns();
-        for (column, &[row, edge]) in columns.clone().zip(deformation_entries(D)) {
-            self.store(column, edges.0[row][edge]);
-        }
-        self.give_back::<V>(columns);
     }
 
     /// The state without stress; `None` where that is the one in which the body is drawn.
@@ -550,9 +516,6 @@ impl<T: Real> Copies<T> {
                 }
                 if reads.natural > 0 {
                     self.take_run::<V, D>(columns, run, columns.natural_columns());
-                }
-                if reads.domains > 0 {
-                    self.take_run::<V, D>(columns, run, columns.domain_columns());
                 }
             }
         }

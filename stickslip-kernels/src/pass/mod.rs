@@ -240,10 +240,10 @@ impl<T: Real, const D: usize> Visit<'_, T, D> {
 /// Base node of a particle: the first that it reaches along each axis.
 pub fn home<T: Real, const D: usize, B: Basis<T>>(
     lattice: &Lattice<T, D>,
-    (position, half_sides): (Vector<T, D>, Vector<T, D>),
+    (position, half_width): (Vector<T, D>, T),
 ) -> [i32; D] {
-    let (x, half) = (lattice.cells(position), lattice.half_sides(half_sides));
-    std::array::from_fn(|i| B::reach(x[i], half[i]).floor())
+    let (x, half) = (lattice.cells(position), lattice.seen_half_side(half_width));
+    std::array::from_fn(|i| B::reach(x[i], half).floor())
 }
 
 /// Whether a position is outside the domain.

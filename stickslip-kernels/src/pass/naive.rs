@@ -7,11 +7,10 @@ use crate::grid::{addressable, window_side};
 use crate::lanes::Any;
 use crate::material::Motion;
 use crate::matter::Particle;
-use crate::particles::deformation_entries;
 use crate::scheme::Transfer;
 use crate::signal::signal_speed;
 use crate::tensor::{Matrix, Real, Symmetric, Vector};
-use crate::transfer::{Share, Stencil, extent, has_spin};
+use crate::transfer::{Share, Stencil, has_spin};
 use crate::viscosity::BulkViscosity;
 
 /// Takes the tile's particles through the pass, by shape functions `B`.
@@ -61,9 +60,7 @@ impl<T: Real, const D: usize> Visit<'_, T, D> {
     unsafe fn naive_one<B: Basis<T>>(&mut self, index: u32, cell: usize) {
         // SAFETY: the caller's.
         let mut particle = unsafe { self.columns.get(index as usize) };
-        // SAFETY: as above.
-        let edges = unsafe { self.columns.edges(index as usize) };
-        let stencil = Stencil::<T, D, B>::new(&self.pass.lattice, (particle.position, edges));
+        let stencil = Stencil::<T, D, B>::of(&self.pass.lattice, &particle);
         let outcome = self.change_naively((&mut particle, index as usize), &stencil);
         // SAFETY: the caller's.
         unsafe { self.columns.set(index as usize, &particle) };
@@ -78,9 +75,7 @@ impl<T: Real, const D: usize> Visit<'_, T, D> {
             Err(kind) => self.find_fault(index, kind),
         }
         if self.pass.verbs.advect {
-            // SAFETY: as above.
-            let place = (particle.position, unsafe { self.columns.edges(index as usize) });
-            let moved = Stencil::<T, D, B>::new(&self.pass.lattice, place).base() != stencil.base();
+            let moved = Stencil::<T, D, B>::of(&self.pass.lattice, &particle).base() != stencil.base();
             self.left |= u64::from(moved) << cell;
             self.moved += u32::from(moved);
             // SAFETY: the caller's.
@@ -192,21 +187,8 @@ impl<T: Real, const D: usize> Visit<'_, T, D> {
                 return Err(FaultKind::NotFinite);
             }
             particle.position = position;
-            let mut edges = particle.deformation * particle.half_width;
-            let reach = |i: usize| (0..D).fold(T::ZERO, |sum, j| sum + edges.0[i][j].abs());
-            let longest = (0..D).map(reach).fold(T::ZERO, T::max);
-            if longest > T::HALF * lattice.cell {
-                edges = edges * (T::HALF * lattice.cell / longest);
-            }
-            edges.0[2][2] = if D == 2 { particle.half_width } else { edges.0[2][2] };
-            for (column, &[row, edge]) in self.columns.domain_columns().zip(deformation_entries(D)) {
-                // SAFETY: the caller of this pass keeps others away from the tile's particles.
-                unsafe { *self.columns.at(column, index) = edges.0[row][edge] };
-            }
-            // SAFETY: as above.
-            let half_sides = extent(&unsafe { self.columns.edges(index) });
-            if is_outside(position, domain) || !addressable(home::<T, D, B>(lattice, (position, half_sides)))
-            {
+            let home = home::<T, D, B>(lattice, (position, particle.half_width));
+            if is_outside(position, domain) || !addressable(home) {
                 return Err(FaultKind::Escaped);
             }
         }

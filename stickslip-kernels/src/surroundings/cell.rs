@@ -3,12 +3,11 @@
 use super::sums::{FIRST, FORCE, MASS, MaterialSums, Wanted, placed_rows, stress_rows};
 use super::{Around, Chunk};
 use crate::basis::{Basis, BoxSide, ShapeFunctions};
-use crate::column::Kind;
 use crate::grid::{Nodes, SIDE, next_of, node_at};
 use crate::lanes::{Laned, Lanes, MOST_LANES, Machine, Numbers, in_lanes, prefetch};
 use crate::particles::{ColumnStart, Columns, deformation_entries, follow_one_another, stress_entries};
 use crate::tensor::{Matrix, Number, Real, Symmetric, Vector, array};
-use crate::transfer::{NodeTable, pairs};
+use crate::transfer::pairs;
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -22,7 +21,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let index = |chunk: &Chunk<D>| {
             &orders[usize::from(chunk.guests)][chunk.first as usize..][..chunk.count as usize]
         };
-        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT + MOST_EDGES]);
+        let mut copies = CellCopies([Numbers::ZERO; ColumnStart::<3>::COUNT]);
         for place in 0..self.chunks.len() {
             if let Some(later) = self.chunks.get(place + AHEAD) {
                 let index = index(later);
@@ -45,25 +44,17 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let mut position = Vector::<V, D>::ZERO;
         // As the nodes see it everywhere: cells are listed by that box, and no other has its functions within them.
         let side = members.side(self.near.lattice.half_side, seen.per_cell);
-        let (mut shapes, mut r) = ([B::shape(V::ZERO, &side); D], Vector::<V, D>::ZERO);
-        // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
-        let mut to_gradient = Vector::<V, D>::ZERO;
+        let mut shapes = [B::shape(V::ZERO, &side); D];
         for i in 0..D {
             position[i] = members.load(ColumnStart::<D>::POSITION + i);
-            r[i] = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
-            to_gradient[i] = seen.per_cell * -seen.sign[i];
-            if !B::CORNERS {
-                shapes[i] = B::shape(r[i], &side);
-                for k in 0..B::WIDTH {
-                    shapes[i].difference[k] *= to_gradient[i];
-                }
+            let r = (position[i] - seen.origin[i]) * seen.per_cell - V::splat(T::of(f64::from(cell[i])));
+            shapes[i] = B::shape(r, &side);
+            // The node sees a particle move away as the particle sees the node move: grad at the node = -grad S(x_p).
+            let to_gradient = seen.per_cell * -seen.sign[i];
+            for k in 0..B::WIDTH {
+                shapes[i].difference[k] *= to_gradient;
             }
         }
-        let mut edges = Matrix::ZERO;
-        if B::CORNERS {
-            edges = members.edges(seen.per_cell);
-        }
-        let seen_by = NodeFunctions { shapes, table: B::Table::<V, D>::new(&r, &edges), to_gradient };
         let volume: V = members.load(ColumnStart::<D>::VOLUME);
         let mut f = Matrix::ZERO;
         for (k, &[row, column]) in deformation_entries(D).iter().enumerate() {
@@ -112,7 +103,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         let rooms = room.first(members.count);
         let mut left = nodes;
         while let Some(node) = next_of(&mut left) {
-            let shares = self.shares(&seen_by, base, node, rooms);
+            let shares = self.shares(&shapes, base, node, rooms);
             let mut added = [M::Wide::NOTHING; FIRST + MOST_PLACED];
             for pair in 0..pairs(members.count) {
                 let share = shares.pair::<M>(pair);
@@ -128,7 +119,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
             }
         }
         if self.sought == Wanted::Everything {
-            self.stress_and_mass::<M, V>(seen, members, (&seen_by, base, nodes), [room, volume]);
+            self.stress_and_mass::<M, V>(seen, members, (&shapes, base, nodes), [room, volume]);
         }
     }
 
@@ -138,7 +129,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         &mut self,
         seen: &Seen<V, D>,
         members: &CellMembers<'_, T, D>,
-        (seen_by, base, mut nodes): (&NodeFunctions<V, D, B>, [i32; D], Nodes),
+        (shapes, base, mut nodes): (&Shapes<V, D, B>, [i32; D], Nodes),
         [room, filled]: [V; 2],
     ) {
         let mut stress = Symmetric::<V>::ZERO;
@@ -168,7 +159,7 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
         masses.fill([mass; 4]);
         let here = V::ONE.first(members.count);
         while let Some(node) = next_of(&mut nodes) {
-            let shares = self.shares(seen_by, base, node, here);
+            let shares = self.shares(shapes, base, node, here);
             let mut added = [M::Wide::NOTHING; MOST_STRESS];
             let [mut weighed, mut pushed] = [M::Wide::NOTHING; 2];
             for pair in 0..pairs(members.count) {
@@ -195,24 +186,13 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     #[inline(always)]
     fn shares<V: Lanes<Real = T>>(
         &self,
-        NodeFunctions { shapes, table, to_gradient }: &NodeFunctions<V, D, B>,
+        shapes: &Shapes<V, D, B>,
         base: [i32; D],
         node: usize,
         factor: V,
     ) -> Rows<T> {
         let steps = node_at([0; D], node);
         let offset: [usize; D] = array(0, |i| (self.along(i, steps[i]) - base[i]) as usize);
-        if B::CORNERS {
-            let n = offset.iter().fold(0, |n, &step| n * B::WIDTH + step);
-            let mut columns = [V::ZERO; 4];
-            for axis in 0..D {
-                columns[axis] = table.slope(n, axis) * (to_gradient[axis] * factor);
-            }
-            columns[3] = table.weight(n) * factor;
-            let mut shares = Rows::<T>::EMPTY;
-            shares.fill(columns);
-            return shares;
-        }
         let [x, dx] = [shapes[0].weight[offset[0]] * factor, shapes[0].slope(offset[0]) * factor];
         let [y, dy] = [shapes[1].weight[offset[1]], shapes[1].slope(offset[1])];
         let mut shares = Rows::<T>::EMPTY;
@@ -233,15 +213,8 @@ impl<T: Laned, const D: usize, B: Basis<T>> Around<'_, T, D, B> {
     }
 }
 
-/// What nodes see of a group of particles.
-struct NodeFunctions<V: Lanes, const D: usize, B: Basis<V::Real>> {
-    /// Along each axis, where the basis is a product.
-    shapes: [ShapeFunctions<V, B::Width>; D],
-    /// Node by node, where it is none.
-    table: B::Table<V, D>,
-    /// What turns its slopes into gradients at the node [1/m].
-    to_gradient: Vector<V, D>,
-}
+/// What nodes see of a group of particles along each axis.
+type Shapes<V, const D: usize, B> = [ShapeFunctions<V, <B as Basis<<V as Lanes>::Real>>::Width>; D];
 
 /// Rows of place, centre and inverse of F, in space.
 const MOST_PLACED: usize = placed_rows(3);
@@ -301,34 +274,24 @@ impl<V: Lanes, const D: usize> Seen<V, D> {
     }
 }
 
-/// Entries of a domain, in space.
-const MOST_EDGES: usize = Kind::Tensor.entries(3);
-/// Where the columns of domains lie among copies.
-const FIRST_EDGE: usize = ColumnStart::<3>::COUNT;
-
 /// How many chunks ahead of the present one numbers are fetched into the cache.
 const AHEAD: usize = 3;
 
-/// The columns that sums are made of, where all bodies have them, and those of domains that deform.
+/// The columns that sums are made of.
 #[inline(always)]
-fn columns_read<T: Real, const D: usize>(columns: &Columns<T, D>, sought: Wanted) -> [Range<usize>; 4] {
+fn columns_read<const D: usize>(sought: Wanted) -> [Range<usize>; 3] {
     let (stress, start) = (ColumnStart::<D>::STRESS, ColumnStart::<D>::START);
     let [first, last] = match sought {
         Wanted::Places => [ColumnStart::<D>::VOLUME, stress],
         Wanted::Everything => [ColumnStart::<D>::MASS, start],
     };
-    [
-        ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY,
-        first..last,
-        start..ColumnStart::<D>::COUNT,
-        columns.domain_columns(),
-    ]
+    [ColumnStart::<D>::POSITION..ColumnStart::<D>::VELOCITY, first..last, start..ColumnStart::<D>::COUNT]
 }
 
 /// Fetches what is read of two particles and those beside them.
 #[inline(always)]
 fn fetch<T: Real, const D: usize>(columns: &Columns<T, D>, particles: [u32; 2], sought: Wanted) {
-    for range in columns_read(columns, sought) {
+    for range in columns_read::<D>(sought) {
         for column in range {
             for particle in particles {
                 // SAFETY: the particle exists.
@@ -344,13 +307,11 @@ struct CellMembers<'a, T, const D: usize> {
     first: *const T,
     stride: usize,
     count: usize,
-    /// Where the columns of domains that deform begin; `None` where none does.
-    domains: Option<usize>,
     source: PhantomData<&'a T>,
 }
 
-/// Columns of particles that do not lie side by side: those that all bodies have, and behind them those of domains.
-struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT + MOST_EDGES]);
+/// Columns of particles that do not lie side by side.
+struct CellCopies<T>([Numbers<T>; ColumnStart::<3>::COUNT]);
 
 impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
     #[inline(always)]
@@ -361,23 +322,22 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
         copies: &'a mut CellCopies<T>,
     ) -> Self {
         let in_a_row = follow_one_another(index);
-        let own = columns.domain_columns();
-        let (first, stride, domains) = if in_a_row {
+        let (first, stride) = if in_a_row {
             // SAFETY: the particle exists.
-            (unsafe { columns.at(0, index[0] as usize) }.cast_const(), columns.stride(), own.start)
+            (unsafe { columns.at(0, index[0] as usize) }.cast_const(), columns.stride())
         } else {
             let lanes = in_lanes(index);
-            for range in columns_read(columns, sought) {
+            for range in columns_read::<D>(sought) {
                 for column in range {
-                    let place = if own.contains(&column) { FIRST_EDGE + column - own.start } else { column };
                     // SAFETY: the particles exist, and nobody writes to them in a survey.
-                    unsafe { V::gather(columns.at(column, 0), &lanes).store(copies.0[place].0.as_mut_ptr()) };
+                    unsafe {
+                        V::gather(columns.at(column, 0), &lanes).store(copies.0[column].0.as_mut_ptr())
+                    };
                 }
             }
-            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>(), FIRST_EDGE)
+            (copies.0.as_ptr().cast(), size_of::<Numbers<T>>() / size_of::<T>())
         };
-        let domains = if own.is_empty() { None } else { Some(domains) };
-        CellMembers { first, stride, count: index.len(), domains, source: PhantomData }
+        CellMembers { first, stride, count: index.len(), source: PhantomData }
     }
 
     /// A side of their boxes as the nodes see them.
@@ -387,19 +347,6 @@ impl<'a, T: Real, const D: usize> CellMembers<'a, T, D> {
             Some(half) => V::splat(half),
             None => self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell,
         })
-    }
-
-    /// Half the edges of their domains, one in each column [cells].
-    #[inline(always)]
-    fn edges<V: Lanes<Real = T>>(&self, per_cell: V) -> Matrix<V> {
-        let Some(first) = self.domains else {
-            return Matrix::IDENTITY * (self.load::<V>(ColumnStart::<D>::HALF_WIDTH) * per_cell);
-        };
-        let mut edges = Matrix::ZERO;
-        for (k, &[row, edge]) in deformation_entries(D).iter().enumerate() {
-            edges.0[row][edge] = self.load::<V>(first + k) * per_cell;
-        }
-        edges
     }
 
     /// Their numbers in a column.

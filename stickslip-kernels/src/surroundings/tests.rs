@@ -1,11 +1,11 @@
 use super::sums::{FIRST, FORCE, MASS, placed_rows};
 use super::*;
-use crate::basis::{Cpdi, Cubic, Gimp, Linear};
+use crate::basis::{Cubic, Gimp, Linear};
 use crate::boundary::{Boundary, reflect};
 use crate::grid::{ActiveBlocks, Lattice, next_of, node_at};
 use crate::lanes::Processor;
 use crate::matter::Particle;
-use crate::particles::{ColumnStart, DOMAINS, OwnColumns, Particles, deformation_entries, stress_entries};
+use crate::particles::{ColumnStart, OwnColumns, Particles, deformation_entries, stress_entries};
 use crate::tensor::{Matrix, Number, Symmetric, Vector};
 use crate::transfer::{Stencil, offsets};
 
@@ -13,13 +13,12 @@ use crate::transfer::{Stencil, offsets};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Boxes {
     Own,
-    Deformed,
     WholeCells,
     TwoCells,
 }
 
 /// Particles strewn over a few cells before two mirrors, deformed and stressed.
-fn body<const D: usize>(boxes: Boxes) -> Particles<f64, D> {
+fn body<const D: usize>() -> Particles<f64, D> {
     let random = |i: usize| (i as f64 * 0.754_877_666_2).fract();
     let place = |i: usize, n: usize| Vector::from_fn(|k| 5.0 * random((k + n) * i + k));
     let particle = |i: usize| {
@@ -42,13 +41,10 @@ fn body<const D: usize>(boxes: Boxes) -> Particles<f64, D> {
         }
     };
     // Where they were at first, and where they are now.
-    let own =
-        OwnColumns { domains: if boxes == Boxes::Deformed { DOMAINS } else { &[] }, ..OwnColumns::default() };
-    let mut particles = Particles::from_fn(300, own, particle);
+    let mut particles = Particles::from_fn(300, OwnColumns::default(), particle);
     for i in 0..300 {
         particles.set(i, &Particle { position: place(i, 3), ..particle(i) });
     }
-    particles.deform_domains(0.5);
     particles
 }
 
@@ -73,8 +69,7 @@ fn plainly<const D: usize, B: Basis<f64>>(
         let sign = |i: usize| if i < D && turned[i] == 1 { -1.0 } else { 1.0 };
         let columns = particles.view();
         for (index, particle) in particles.iter().enumerate() {
-            let stencil =
-                Stencil::<f64, D, B>::new(&near.lattice, (particle.position, particles.edges(index)));
+            let stencil = Stencil::<f64, D, B>::of(&near.lattice, &particle);
             let Some(offset) = offsets::<D>(B::WIDTH)
                 .find(|offset| (0..D).all(|i| stencil.base()[i] + offset[i] as i32 == image[i]))
             else {
@@ -116,17 +111,17 @@ fn plainly<const D: usize, B: Basis<f64>>(
 
 fn particles_of_a_cell_side_by_side_give_the_sums<const D: usize, B: Basis<f64>>(boxes: Boxes) {
     let half_side = match boxes {
-        Boxes::Own | Boxes::Deformed => None,
+        Boxes::Own => None,
         Boxes::WholeCells => Some(0.5),
         Boxes::TwoCells => Some(1.0),
     };
     let lattice = Lattice { half_side, ..Lattice::new(Vector::ZERO, 1.0) };
-    let particles = body::<D>(boxes);
+    let particles = body::<D>();
     let mut active = ActiveBlocks::<D>::default();
     let base = |_, particle| {
-        let (position, half_sides) = particles.place(particle);
-        let half = lattice.half_sides(half_sides);
-        std::array::from_fn(|i| Number::max(B::reach(position[i], half[i]), -9.0).floor() as i32)
+        let (position, half_width) = particles.place(particle);
+        let half = lattice.seen_half_side(half_width);
+        std::array::from_fn(|i| Number::max(B::reach(position[i], half), -9.0).floor() as i32)
     };
     let number = |_, particle: usize| particles.numbers()[particle];
     active.update((1, |_| 300, B::WIDTH as i32 - 1), None, (base, number));
@@ -176,10 +171,6 @@ fn sums_are_those_of_the_equations() {
     }
     particles_of_a_cell_side_by_side_give_the_sums::<2, Cubic>(Boxes::TwoCells);
     particles_of_a_cell_side_by_side_give_the_sums::<3, Cubic>(Boxes::TwoCells);
-    for boxes in [Boxes::Own, Boxes::Deformed] {
-        particles_of_a_cell_side_by_side_give_the_sums::<2, Cpdi>(boxes);
-        particles_of_a_cell_side_by_side_give_the_sums::<3, Cpdi>(boxes);
-    }
 }
 
 #[test]

@@ -15,8 +15,8 @@
 //! ```text
 //! sum_p m_p (x_p x v_p + k^2 w_p),   w_p: spin of C_p
 //! ```
-//! and (a) followed by (b) makes no kinetic energy m (v^2 + q |C|^2)/2 as long as D_p <= 2 q. Of domains that deform
-//! (CPDI) D_p has no bound, so q is at least 2/3 of it, which is what it is at most with all others.
+//! and (a) followed by (b) makes no kinetic energy m (v^2 + q |C|^2)/2 as long as D_p <= 2 q. It is 3/2 q at most, by
+//! tent functions in the middle of a cell.
 //!
 //! Where the velocities v~_i that move particles are those of a second scatter, x_p and v_p part: x_p x v_p changes by
 //! dt v~_p x v_p. No angular momentum changes where every share S_ip of a particle moves with its node, for
@@ -59,7 +59,7 @@ impl Apic {
         for row in &spread.0 {
             widest = widest.max(row[0].abs() + row[1].abs() + row[2].abs());
         }
-        // D_p / q <= 3/2
+        // D_p / q <= 3/2, whatever round-off does.
         let share = (scale + scale).min(V::of(1.5) / (widest * cell));
         let others = *moments - *given * *spread * cell;
         *given + others * share

@@ -7,7 +7,6 @@
 // Sums over nodes and components read better by their indices.
 #![allow(clippy::needless_range_loop)]
 
-use super::corners::NodeTable;
 use crate::basis::{Basis, BoxSide, Entries, Line, Neighbours, Plane, ShapeFunctions, Space};
 use crate::grid::{NODE_VALUES, NodeSums, NodeValues, SIDE, WINDOW_NODES, Window, window_side};
 use crate::lanes::{Lanes, MOST_LANES, Machine};
@@ -114,8 +113,6 @@ impl Start for Own {
 #[derive(Clone, Copy, Debug)]
 pub struct Group<V: Lanes, const D: usize, B: Basis<V::Real>, S> {
     shapes: [ShapeFunctions<V, B::Width>; D],
-    /// Weights and slopes of bases that are no product over the axes, see [`Basis::CORNERS`].
-    table: B::Table<V, D>,
     /// Places after the base nodes [cells].
     r: Vector<V, D>,
     start: S,
@@ -160,21 +157,16 @@ const fn last_start(dimension: usize, window: usize) -> usize {
 }
 
 impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
-    /// Particles at `r` from their base nodes [cells], `count` of them, with boxes of these sides, or with domains that
-    /// have these half edges [cells]; `start` has the base nodes' places in the window.
+    /// Particles at `r` from their base nodes [cells], `count` of them, with boxes of this side; `start` has the base
+    /// nodes' places in the window.
     #[inline(always)]
-    pub fn new(
-        r: Vector<V, D>,
-        (sides, edges): (&[BoxSide<V>; D], &Matrix<V>),
-        start: S,
-        count: usize,
-    ) -> Self {
+    pub fn new(r: Vector<V, D>, side: &BoxSide<V>, start: S, count: usize) -> Self {
         // No closure: the compiler may leave one of this size uninlined, and then its instructions are calls.
-        let mut shapes = [B::shape(r[0], &sides[0]); D];
+        let mut shapes = [B::shape(r[0], side); D];
         for i in 1..D {
-            shapes[i] = B::shape(r[i], &sides[i]);
+            shapes[i] = B::shape(r[i], side);
         }
-        Group { shapes, table: B::Table::<V, D>::new(&r, edges), r, start, count, basis: PhantomData }
+        Group { shapes, r, start, count, basis: PhantomData }
     }
 
     /// Place of a node in the window, after that of the base node.
@@ -193,15 +185,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     pub fn interpolate(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> Vector<V, D> {
         let mut sum = [V::NOTHING; D];
-        if B::CORNERS {
-            for (n, [i, j, k]) in Self::nodes() {
-                for c in 0..D {
-                    let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
-                    sum[c] = self.table.weight(n).times_plus(value, sum[c]);
-                }
-            }
-            return Vector(sum);
-        }
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         for i in 0..B::WIDTH {
             let mut plane = [V::NOTHING; D];
@@ -228,9 +211,9 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     pub fn interpolate_mean(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> V {
         let mut sum = V::NOTHING;
-        for (n, [i, j, k]) in Self::nodes() {
+        for [i, j, k] in Self::nodes() {
             let value: V = self.start.value(nodes, Self::offset(i, j, k), NODE_VALUES - 1);
-            sum = self.weight(n, [i, j, k]).times_plus(value, sum);
+            sum = self.weight([i, j, k]).times_plus(value, sum);
         }
         sum
     }
@@ -238,18 +221,13 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     /// G2P: h L = sum v_i (x) h grad S_i, embedded in space, and sum S_i v_i of the same velocities [m/s].
     #[inline(always)]
     pub fn flow(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        if B::CORNERS { self.sums_of_slopes(nodes) } else { self.sums::<true>(nodes, &self.slopes()) }
-    }
-
-    #[inline(always)]
-    fn slopes(&self) -> [Line<B, V::Real, V>; D] {
         let mut slopes = [Line::<B, V::Real, V>::all(V::ZERO); D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
                 slopes[axis][i] = self.shapes[axis].slope(i);
             }
         }
-        slopes
+        self.sums::<true>(nodes, &slopes)
     }
 
     /// G2P: sum v_i (x) S_i (x_i - x_p) over h, embedded in space, and sum S_i v_i [m/s]; without the diagonal, which
@@ -259,9 +237,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         &self,
         nodes: &[NodeValues<V::Real>; WINDOW_NODES],
     ) -> (Matrix<V>, Vector<V, D>) {
-        if B::CORNERS {
-            return self.sums_of_arms(nodes);
-        }
         let mut arms = [Line::<B, V::Real, V>::all(V::ZERO); D];
         for axis in 0..D {
             for i in 0..B::WIDTH {
@@ -275,18 +250,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
     #[inline(always)]
     pub fn spread(&self) -> Matrix<V> {
         let mut spread = Matrix::<V>::ZERO;
-        if B::CORNERS {
-            for (n, at) in Self::nodes() {
-                for a in 0..D {
-                    let share = self.table.weight(n) * (V::of(at[a] as f64) - self.r[a]);
-                    for b in 0..D {
-                        let arm = V::of(at[b] as f64) - self.r[b];
-                        spread.0[a][b] = share.times_plus(arm, spread.0[a][b]);
-                    }
-                }
-            }
-            return spread;
-        }
         for axis in 0..D {
             for i in 0..B::WIDTH {
                 let arm = V::of(i as f64) - self.r[axis];
@@ -358,40 +321,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (sums, sum)
     }
 
-    /// [`Group::flow`] by slopes node by node.
-    #[inline(always)]
-    fn sums_of_slopes(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        let (mut sums, mut sum) = (Matrix::<V>::ZERO, Vector::ZERO);
-        for (n, [i, j, k]) in Self::nodes() {
-            for c in 0..D {
-                let value: V = self.start.value(nodes, Self::offset(i, j, k), c);
-                sum[c] = self.table.weight(n).times_plus(value, sum[c]);
-                for axis in 0..D {
-                    sums.0[c][axis] = self.table.slope(n, axis).times_plus(value, sums.0[c][axis]);
-                }
-            }
-        }
-        (sums, sum)
-    }
-
-    /// [`Group::moments`] by weights node by node.
-    #[inline(always)]
-    fn sums_of_arms(&self, nodes: &[NodeValues<V::Real>; WINDOW_NODES]) -> (Matrix<V>, Vector<V, D>) {
-        let (mut sums, mut sum) = (Matrix::<V>::ZERO, Vector::ZERO);
-        for (n, at) in Self::nodes() {
-            for c in 0..D {
-                let value: V = self.start.value(nodes, Self::offset(at[0], at[1], at[2]), c);
-                let value = self.table.weight(n) * value;
-                sum[c] += value;
-                for axis in 0..D {
-                    let arm = V::of(at[axis] as f64) - self.r[axis];
-                    sums.0[c][axis] = arm.times_plus(value, sums.0[c][axis]);
-                }
-            }
-        }
-        (sums, sum)
-    }
-
     /// P2G: adds what the particles scatter to the window, two particles at a time.
     ///
     /// ```text
@@ -429,7 +358,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
             stress: load.stress.is_some().then_some(&stress),
         };
         match self.start.shared() {
-            Some(start) if B::CORNERS => self.scatter_by_nodes::<M>(window, start, &pairs),
             // A number that the compiler knows, so that loops over pairs are unrolled.
             Some(start) if n == V::COUNT => {
                 Group { count: V::COUNT, ..*self }.scatter_together::<M>(window, start, &pairs);
@@ -597,50 +525,6 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         (forces, above)
     }
 
-    /// For particles that share their nodes, by weights and slopes node by node.
-    #[inline(always)]
-    fn scatter_by_nodes<M: Machine<V::Real>>(
-        &self,
-        window: &mut Window<V::Real, D>,
-        start: usize,
-        PairLoad { momentum, stress }: &PairLoad<'_, V::Real>,
-    ) {
-        for (n, at) in Self::nodes() {
-            let (mut weights, mut slopes) = (Factors::EMPTY, [Factors::EMPTY; D]);
-            if momentum.is_some() {
-                weights.put(self.weight(n, at));
-            }
-            if stress.is_some() {
-                for axis in 0..D {
-                    slopes[axis].put(-self.table.slope(n, axis));
-                }
-            }
-            for part in 0..<M::Wide as Lanes>::REGISTERS {
-                let [mut given, mut force] = [Register::<M, V::Real>::NOTHING; 2];
-                if let Some([first, steps @ ..]) = momentum {
-                    for pair in 0..self.pairs() {
-                        let mut row = first.get::<M>(pair, part);
-                        for axis in 0..D {
-                            let step = steps[axis].get::<M>(pair, part);
-                            row = step.times_plus(Register::<M, V::Real>::of(at[axis] as f64), row);
-                        }
-                        given = row.times_plus(weights.get::<M>(pair), given);
-                    }
-                }
-                if let Some(stress) = stress {
-                    for axis in 0..D {
-                        for pair in 0..self.pairs() {
-                            let row = stress[axis].get::<M>(pair, part);
-                            force = row.times_plus(slopes[axis].get::<M>(pair), force);
-                        }
-                    }
-                }
-                let [i, j, k] = at;
-                add::<M, _>((&mut window.sums[start + Self::offset(i, j, k)], part), given, force);
-            }
-        }
-    }
-
     /// For particles that share no nodes.
     #[inline(always)]
     fn scatter_singly<M: Machine<V::Real>>(
@@ -651,15 +535,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         let [x, y, z] = [&self.shapes[0], &self.shapes[1], &self.shapes[D - 1]];
         let mut weights = Space::<B, V::Real, _>::all(Factors::EMPTY);
         let mut slopes = Space::<B, V::Real, _>::all([Factors::EMPTY; D]);
-        for (n, [i, j, k]) in Self::nodes() {
+        for (n, [i, j, k]) in Self::nodes().enumerate() {
             if momentum.is_some() {
-                weights[n].put(self.weight(n, [i, j, k]));
+                weights[n].put(self.weight([i, j, k]));
             }
-            if stress.is_some() && B::CORNERS {
-                for axis in 0..D {
-                    slopes[n][axis].put(self.table.slope(n, axis));
-                }
-            } else if stress.is_some() {
+            if stress.is_some() {
                 let depth = if D == 2 { V::ONE } else { z.weight[k] };
                 slopes[n][0].put(x.slope(i) * self.across(j, k));
                 slopes[n][1].put(x.weight[i] * y.slope(j) * depth);
@@ -684,7 +564,7 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
                     rows[axis] = stress[axis].one::<M>(p, part);
                 }
             }
-            for (n, [i, j, k]) in Self::nodes() {
+            for (n, [i, j, k]) in Self::nodes().enumerate() {
                 let (mut given, mut force) = (Register::<M, V::Real>::ZERO, Register::<M, V::Real>::NOTHING);
                 if momentum.is_some() {
                     let mut row = momenta[0];
@@ -704,11 +584,11 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         }
     }
 
-    /// The nodes that a particle reaches, numbered.
+    /// The nodes that a particle reaches.
     #[inline(always)]
-    fn nodes() -> impl Iterator<Item = (usize, [usize; 3])> {
+    fn nodes() -> impl Iterator<Item = [usize; 3]> {
         let count = B::WIDTH * B::WIDTH * Self::DEPTH;
-        (0..count).map(|n| (n, [n / (B::WIDTH * Self::DEPTH), n / Self::DEPTH % B::WIDTH, n % Self::DEPTH]))
+        (0..count).map(|n| [n / (B::WIDTH * Self::DEPTH), n / Self::DEPTH % B::WIDTH, n % Self::DEPTH])
     }
 
     #[inline(always)]
@@ -716,10 +596,10 @@ impl<V: Lanes, const D: usize, B: Basis<V::Real>, S: Start> Group<V, D, B, S> {
         pairs(self.count)
     }
 
-    /// S_i of the `n`-th node, `i`, `j` and `k` after the base node.
+    /// S_i of the node `i`, `j` and `k` after the base node.
     #[inline(always)]
-    fn weight(&self, n: usize, [i, j, k]: [usize; 3]) -> V {
-        if B::CORNERS { self.table.weight(n) } else { self.shapes[0].weight[i] * self.across(j, k) }
+    fn weight(&self, [i, j, k]: [usize; 3]) -> V {
+        self.shapes[0].weight[i] * self.across(j, k)
     }
 
     /// Product of the weights across the first axis.

@@ -9,11 +9,8 @@
 //! | [`Group::flow`] | G2P of the velocity gradient L, and of the velocity with it |
 //! | [`Group::moments`], [`Group::spread`] | G2P of rotation and of affine velocities |
 //! | [`Group::scatter`] | P2G of mass, momentum and force |
-//!
-//! Where shape functions are no product over the axes, `corners.rs` has them.
 
 mod apic;
-mod corners;
 mod flip;
 mod group;
 mod naive;
@@ -23,7 +20,6 @@ pub mod rotation;
 mod xpic;
 
 pub use apic::Apic;
-pub use corners::{CornerTable, NodeTable, convected_edges, extent};
 pub use flip::Flip;
 pub use group::{CellGroup, Group, Momentum, Own, ScatterTerms, Start, pairs};
 pub use naive::Stencil;

@@ -15,21 +15,18 @@ pub struct Stencil<T: Real, const D: usize, B: Basis<T>> {
     r: [T; D],
     /// 1/cell [1/m]
     per_cell: T,
-    /// Half the edges of its domain, one in each column [cells].
-    edges: Matrix<T>,
     basis: PhantomData<B>,
 }
 
 impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
-    /// The stencil of a particle at a position with a domain of these half edges [m].
+    /// The stencil of a particle.
     #[inline(always)]
-    pub fn new(lattice: &Lattice<T, D>, (position, edges): (Vector<T, D>, Matrix<T>)) -> Self {
-        let x = lattice.cells(position);
-        let reach = Vector::from_fn(|i| (0..D).fold(T::ZERO, |sum, j| sum + edges.0[i][j].abs()));
-        let half = lattice.half_sides(reach);
-        let axes: [Axis<T, B::Width>; D] = std::array::from_fn(|i| B::axis(x[i], half[i]));
+    pub fn of(lattice: &Lattice<T, D>, particle: &Particle<T, D>) -> Self {
+        let x = lattice.cells(particle.position);
+        let half = lattice.seen_half_side(particle.half_width);
+        let axes: [Axis<T, B::Width>; D] = std::array::from_fn(|i| B::axis(x[i], half));
         let r = std::array::from_fn(|i| x[i] - T::of(f64::from(axes[i].base)));
-        Stencil { axes, r, per_cell: lattice.per_cell, edges: edges * lattice.per_cell, basis: PhantomData }
+        Stencil { axes, r, per_cell: lattice.per_cell, basis: PhantomData }
     }
 
     /// Base node: the first that the particle reaches along each axis.
@@ -41,9 +38,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
     /// Weight [-] and gradient [1/m] of the node at `base + offset`.
     #[inline(always)]
     pub fn at(&self, offset: [usize; D]) -> (T, Vector<T, D>) {
-        if B::CORNERS {
-            return self.at_by_corners(offset);
-        }
         let weight = |skip: usize| {
             let axis =
                 |w, i: usize| w * if i == skip { T::ONE } else { self.axes[i].shape.weight[offset[i]] };
@@ -51,22 +45,6 @@ impl<T: Real, const D: usize, B: Basis<T>> Stencil<T, D, B> {
         };
         let gradient = Vector::from_fn(|i| weight(i) * self.axes[i].shape.slope(offset[i]) * self.per_cell);
         (weight(D), gradient)
-    }
-
-    /// The same as means over the corners of the domain: the tent functions there, and their differences across it.
-    fn at_by_corners(&self, offset: [usize; D]) -> (T, Vector<T, D>) {
-        let (mut weight, mut across) = (T::ZERO, [T::ZERO; D]);
-        for corner in offsets::<D>(2) {
-            let sign = corner.map(|side| T::of(2.0 * side as f64 - 1.0));
-            let place = |i: usize| (0..D).fold(self.r[i], |x, a| x + sign[a] * self.edges.0[i][a]);
-            let tent = |i: usize| (T::ONE - (place(i) - T::of(offset[i] as f64)).abs()).max(T::ZERO);
-            let there = (0..D).fold(T::ONE, |product, i| product * tent(i)) * T::of(0.5_f64.powi(D as i32));
-            weight += there;
-            (0..D).for_each(|a| across[a] += sign[a] * there);
-        }
-        let inverse = self.edges.inverse();
-        let along = |i: usize| (0..D).fold(T::ZERO, |sum, a| sum + across[a] * inverse.0[a][i]);
-        (weight, Vector::from_fn(|i| along(i) * self.per_cell))
     }
 
     /// From the particle to the node at `base + offset` [m].

@@ -19,8 +19,7 @@
 //! ```
 //! k_p must not change while a particle moves, or energy is made; it is that for which the nodes' moment of inertia and
 //! the particles' are the same in the mean over places, k^2 = 2 (h^2/6 + b l^2) with
-//! b = [`crate::basis::Basis::BOX_SPREAD`], of the undeformed box: a body whose domains have stretched far weighs less
-//! against turning than its nodes. Rigid rotation is a state of (a) and (b): nothing is strained.
+//! b = [`crate::basis::Basis::BOX_SPREAD`]. Rigid rotation is a state of (a) and (b): nothing is strained.
 //!
 //! Within a step particles turn. Velocities that are scattered in its middle, at places of its start,
 //! so have the gradient

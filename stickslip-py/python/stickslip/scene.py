@@ -120,7 +120,7 @@ class Scene:
 
         `gravity` is the acceleration of every body (D,) [m/s^2]; `parameters` are names of your own for numbers and
         words; `space` are further keys of `[space]`: `basis`, the shape functions between particles and grid ("gimp" by
-        default, "cpdi", "linear", "spline" or "cubic"), `interior`, where bodies that deform are computed ("reference"
+        default, "linear", "spline" or "cubic"), `interior`, where bodies that deform are computed ("reference"
         for elastic bodies by default, "grid" or "auto"), `precision` ("double" by default, or "single"),
         `particles_per_side` of a cell (2 by default).
         """

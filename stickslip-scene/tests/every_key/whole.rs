@@ -15,7 +15,7 @@ pub const CASES: &[Cases] = &[
             ("space.dimension", "plane-stress"),
             ("space.cell", "2 cm"),
             ("space.particles_per_side", "3"),
-            ("space.basis", "cpdi"),
+            ("space.basis", "cubic"),
             ("space.interior", "grid"),
             ("space.precision", "single"),
             ("space.domain", "{ min = [-2, -2], max = [1, 1] }"),

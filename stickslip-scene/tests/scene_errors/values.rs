@@ -42,6 +42,16 @@ fn values_out_of_range() {
                 "4:12: space.interior: found \"referense\"; allowed: \"grid\", \"reference\" or \"auto\"; did you mean `reference`?",
             ),
             (
+                "\"0.1 m\"",
+                "1\nbasis = \"cubik\"",
+                "4:9: space.basis: found \"cubik\"; allowed: \"gimp\", \"linear\", \"spline\" or \"cubic\"; did you mean `cubic`?",
+            ),
+            (
+                "\"0.1 m\"",
+                "1\nbasis = \"CPDI\"",
+                "4:9: space.basis: found \"CPDI\"; allowed: \"gimp\", \"linear\", \"spline\" or \"cubic\"; here: no domains that deform; bodies that stay whole stretch, turn and bend without them on grids of their own, interior = \"reference\", the default of elastic ones: leave `basis` out",
+            ),
+            (
                 "radius = \"0.4 m\" }",
                 "radius = \"0.4 m\" }\ninterior = \"mesh\"",
                 "16:12: bodies[0].interior: found \"mesh\"; allowed: \"grid\" or \"reference\"",

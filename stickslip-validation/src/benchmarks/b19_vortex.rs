@@ -36,7 +36,7 @@ root of the mean square error of the particles' places, over A.",
         laws: &["gimp-modified-last-rflip"],
         text: "From 16 to 32 cells the order is 1.85, from 32 to 64 it is 0.66: the error stays at 0.33 % of the \
 amplitude, as B17's does at 1 %. A part of it grows with the shear, for the boxes of uniform GIMP neither turn nor shear \
-with the particles: with a fifth of the amplitude it is 0.21 %, and so it is by `cpdi`.",
+with the particles: with a fifth of the amplitude it is 0.21 %.",
     }],
     run,
 };

@@ -43,7 +43,7 @@ in-plane stresses within R/4 of the centre, in the last turn; and angular moment
 the gradients that strain particles and the velocities that part them differ in the second order, and with two \
 particles a side that adds up: stresses are 10 % high in plane strain and 14 % in plane stress after three turns \
 with R/8, and 37 % and 52 % after ten with R/16, when 0.2 % and 0.3 % of the angular momentum are lost and 12 % of \
-the energy have come from nowhere. By `cpdi`, whose domains turn, they are 2 and 3 % high after three turns.",
+the energy have come from nowhere.",
     }],
     run,
 };

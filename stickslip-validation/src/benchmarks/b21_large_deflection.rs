@@ -54,7 +54,7 @@ exact.",
         text: "The boxes of uniform GIMP do not turn with the particles. Where a body has turned through the grid, \
 the gradients that strain particles and the velocities that part them differ in the second order, and with two \
 particles a side that adds up: the beam that a clamp turns up hangs 17 % too low at H/4 and 15 % at H/8, with three \
-a side 1 %, and in place it is right. `cpdi`, whose domains turn, is within 2 % at H/4.",
+a side 1 %, and in place it is right.",
     }],
     run,
 };

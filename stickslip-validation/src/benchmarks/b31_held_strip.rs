@@ -49,7 +49,7 @@ and, while it is held, at 1.2 and at 2 of its length.",
     reasons: &[Reason {
         laws: &["gimp-modified-last-rflip"],
         text: "Stretched to its double, the boxes of uniform GIMP, which do not stretch, leave gaps: the strip \
-tears, and its force is 0.0 of the exact one. The run says so. `cpdi`, whose domains stretch, has 1.00. A strip that \
+tears, and its force is 0.0 of the exact one. The run says so. A strip that \
 has torn does not push: -0.05 is the worst that is let pass.",
     }],
     run,

@@ -39,7 +39,7 @@ where sliding is slower. Measured over mu.",
         text: "The block shakes, more where the floor is faster, and nothing damps it: friction between a rigid and \
 an elastic body feeds short waves (Martins, Guimaraes and Faria 1995; Adams 1995). Nodes let go for moments, and the \
 mean falls short: 0.959 at 1e-3 c and 0.793 at 1e-2 c at H/8. It is no fault of the law of friction, and not of the \
-block: the kinks of tent functions feed it, by cpdi and by apic alike (0.823 and 0.867 at 1e-2 c). By quadratic \
+block: the kinks of tent functions feed it, by apic too (0.867 at 1e-2 c). By quadratic \
 B-splines it is 0.999 at all three speeds, and with FLIP alone and pic_share = 0.05 0.998 and 0.999.",
     }],
     run,

@@ -1,7 +1,7 @@
 //! Where a scene begins that begins from another run: a checkpoint of it, or a snapshot.
 
 use super::ResumeError;
-use crate::column::{EVERY, HALF_EDGES, optional_in_files};
+use crate::column::{EVERY, optional_in_files};
 use crate::door::{NotTakenUp, RestoreError, SavedState, Simulation, View};
 use crate::observe::{
     Checkpoint, Frame, Manifest, Memory, ParticleFile, ParticlesThere, ReadError, ReadProblem, Results,
@@ -175,9 +175,7 @@ impl RecordedBodies<'_> {
             .collect();
         for (i, body) in carried().filter(|(_, body)| !body.is_rigid()) {
             let own = view.columns(i).into_iter().map(|column| column.name);
-            // Domains follow from the deformation.
-            let own =
-                own.filter(|name| *name != HALF_EDGES && !EVERY.iter().any(|every| every.name == *name));
+            let own = own.filter(|name| !EVERY.iter().any(|every| every.name == *name));
             wanted.extend(own.filter(|name| written.iter().all(|column| column != name)));
             let law = self.body(&body.name).and_then(|body| body.get("material")).and_then(Value::as_u64);
             let law = law.and_then(|number| self.record.pointer(&format!("/materials/{number}/law")));

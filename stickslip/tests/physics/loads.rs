@@ -40,7 +40,7 @@ fn bar(offset: f64, (basis, time): (&str, &str), more: &str) -> String {
     )
 }
 
-const BASES: [&str; 5] = ["gimp", "cpdi", "linear", "spline", "cubic"];
+const BASES: [&str; 4] = ["gimp", "linear", "spline", "cubic"];
 /// Speed of a wave along the bar [m/s].
 const SPEED: f64 = 100.0;
 

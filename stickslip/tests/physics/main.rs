@@ -64,7 +64,6 @@ mod spinning_disk;
 mod springs;
 mod stacks;
 mod starts;
-mod stretched;
 mod struck_bar;
 mod threads;
 mod transfers;

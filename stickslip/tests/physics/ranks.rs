@@ -138,7 +138,6 @@ fn in_the_plane() {
     compare("apic", &with("transfer = \"apic\"").replace("\"gimp\"", "\"spline\""), 200);
     compare("cubic", &plane.replace("\"gimp\"", "\"cubic\""), 200);
     compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
-    compare("cpdi", &plane.replace("\"gimp\"", "\"cpdi\""), 200);
     let damped = damped(&with("relax = { residual = 1e-6 }"));
     compare("damped and relaxed", &damped, 200);
     let periodic = periodic(&plane);
@@ -164,10 +163,6 @@ fn by_all_contact_laws() {
     for law in ["kinematic", "traction", "gap", "separation", "regression"] {
         compare(law, &plane.replace("friction = 0.3", &format!("friction = 0.3\nlaw = \"{law}\"")), 100);
     }
-    let both = plane
-        .replace("\"gimp\"", "\"cpdi\"")
-        .replace("friction = 0.3", "friction = 0.3\nlaw = \"regression\"");
-    compare("regression, cpdi", &both, 60);
     let both = plane
         .replace("\"gimp\"", "\"linear\"")
         .replace("friction = 0.3", "friction = 0.3\nlaw = \"regression\"");
@@ -217,7 +212,7 @@ fn with_loads() {
         [text, &loads].concat()
     };
     let plane = loaded(&crowd("plane-strain", "gimp", "modified-last"), "");
-    for basis in ["linear", "spline", "cubic", "cpdi"] {
+    for basis in ["linear", "spline", "cubic"] {
         compare(&format!("loads, {basis}"), &plane.replace("\"gimp\"", &format!("\"{basis}\"")), 100);
     }
     compare("loads, first", &plane.replace("\"modified-last\"", "\"first\""), 100);

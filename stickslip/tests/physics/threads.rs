@@ -190,7 +190,6 @@ fn in_the_plane() {
     compare("xpic", &with("transfer = \"xpic\"\nxpic_order = 3"), 200);
     compare("flip", &with("transfer = \"flip\"\npic_share = 0.01"), 200);
     compare("pic", &with("transfer = \"pic\""), 200);
-    compare("cpdi", &plane.replace("\"gimp\"", "\"cpdi\""), 200);
     let averaged = plane.replace("density = 2000,", "density = 2000, volume_change = \"averaged\",");
     assert!(averaged.contains("averaged"));
     for update in STRESS_UPDATES {
@@ -216,7 +215,6 @@ fn in_the_plane() {
 #[test]
 fn in_space() {
     compare("gimp, modified-last", &scene("3d", "gimp", "modified-last"), 200);
-    compare("cpdi, modified-last", &scene("3d", "cpdi", "modified-last"), 60);
     compare("linear, first", &scene("3d", "linear", "first"), 60);
     compare("cubic, first", &scene("3d", "cubic", "first"), 60);
 }

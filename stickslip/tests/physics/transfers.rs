@@ -21,7 +21,7 @@ use stickslip::door::{Ledger, ParticleSnapshot};
 /// Rim speed over the speed of waves sqrt(E/rho) of 0.1, for a radius of 1 m [rad/s].
 const SPIN: f64 = 1.0;
 const TRANSFERS: [&str; 5] = ["rflip", "flip", "apic", "xpic", "pic"];
-const BASES: [&str; 5] = ["gimp", "cpdi", "spline", "cubic", "linear"];
+const BASES: [&str; 4] = ["gimp", "spline", "cubic", "linear"];
 
 fn run(basis: &str, transfer: &str, motion: &str, end: f64) -> ([Ledger; 2], ParticleSnapshot) {
     let scene = format!(
@@ -77,7 +77,7 @@ fn each_keeps_momentum_and_books_what_it_takes() {
 
 #[test]
 fn some_keep_the_spin() {
-    for basis in ["gimp", "cpdi", "spline", "cubic"] {
+    for basis in ["gimp", "spline", "cubic"] {
         let kept = ["rflip", "flip", "xpic", "pic"].map(|transfer| {
             let ([before, after], _) =
                 run(basis, &named(transfer), &format!("spin = {SPIN}"), 2.0 * PI / SPIN);
@@ -111,29 +111,25 @@ fn apic_keeps_the_spin_to_round_off() {
 /// All components, in space, of a ball that swells and rings as it turns.
 #[test]
 fn apic_keeps_the_spin_about_any_axis() {
-    for basis in ["gimp", "cpdi"] {
-        let scene = format!(
-            r#"
-            space = {{ dimension = "3d", interior = "grid", cell = 0.4, basis = "{basis}" }}
-            time = {{ end = 1, transfer = "apic" }}
-            [materials.rubber]
-            density = 1000
-            neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }}
-            [[bodies]]
-            name = "ball"
-            material = "rubber"
-            shape.ball = {{ center = [0.03, 0.07, 0.02], radius = 1 }}
-            velocity = [1, 2, -1]
-            spin = [1, 2, -3]
-            "#
-        );
-        let mut simulation = start(&scene);
-        let before = simulation.ledger().angular_momentum;
-        run_to(&mut *simulation, 0.3, |_| {});
-        let gained = distance(simulation.ledger().angular_momentum, before) / norm(before);
-        println!("{basis}: {gained:.1e}");
-        assert!(gained < 1e-12, "{basis}: {gained}");
-    }
+    let scene = r#"
+        space = { dimension = "3d", interior = "grid", cell = 0.4 }
+        time = { end = 1, transfer = "apic" }
+        [materials.rubber]
+        density = 1000
+        neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+        [[bodies]]
+        name = "ball"
+        material = "rubber"
+        shape.ball = { center = [0.03, 0.07, 0.02], radius = 1 }
+        velocity = [1, 2, -1]
+        spin = [1, 2, -3]
+        "#;
+    let mut simulation = start(scene);
+    let before = simulation.ledger().angular_momentum;
+    run_to(&mut *simulation, 0.3, |_| {});
+    let gained = distance(simulation.ledger().angular_momentum, before) / norm(before);
+    println!("{gained:.1e}");
+    assert!(gained < 1e-12, "{gained}");
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn rolled(cells: usize, basis: &str) -> f64 {
 
 /// What rolls loses its speed to noise, and only smaller cells help: splines, by which a disk that spins in flight has
 /// the right stress, slow it down far more. Measured 0.87 and 0.96 of its speed by `gimp` with 4 and 8 cells a radius,
-/// 0.87 by `cpdi` with 4, 0.36 by `spline`; exact is 1.
+/// 0.36 by `spline` with 4; exact is 1.
 #[test]
 fn what_rolls_loses_less_by_gimp_than_by_splines() {
     let [gimp, spline] = ["gimp", "spline"].map(|basis| rolled(4, basis));

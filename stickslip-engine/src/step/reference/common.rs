@@ -20,7 +20,7 @@ use super::super::loads::{before_mirrors, mirror};
 use super::loads::carrier;
 use super::{is_reference, layer_moduli};
 use crate::Kernels;
-use crate::body::Body;
+use crate::body::{Body, Particle};
 use crate::boundary::Boundary;
 use crate::contact::Rules;
 use crate::geometry::{MirroredShape, SignedDistance};
@@ -130,16 +130,16 @@ struct Share<const D: usize> {
 impl<T: Laned, const D: usize> CommonGrid<'_, T, D> {
     /// Takes the nodes that move a point, those before mirrors for those behind them.
     fn each_node(&self, place: Vector<f64, D>, take: &mut dyn FnMut(Share<D>)) {
-        let half = T::of(POINT) * self.lattice.cell;
-        let edges = Matrix::from_fn(|i, j| if i == j && i < D { half } else { T::ZERO });
-        let point = carrier(Vector::from_fn(|k| T::of(place[k])), Matrix::IDENTITY, T::ZERO);
+        let at = Vector::from_fn(|k| T::of(place[k]));
+        let half_width = T::of(POINT) * self.lattice.cell;
+        let point = Particle { half_width, ..carrier(at, Matrix::IDENTITY, T::ZERO) };
         let mut fold = |node: [i32; D], [own, _]: [T; 2]| {
             let (node, mirrored) = before_mirrors(self.boundary, node);
             if own > T::ZERO {
                 take(Share { node, mirrored, share: own.f64() });
             }
         };
-        (self.kernels.nodes_of)(self.lattice, (&point, &edges), &[0.0; 3], &mut fold);
+        (self.kernels.nodes_of)(self.lattice, &point, &[0.0; 3], &mut fold);
     }
 
     /// The nodes of a body with mass that move a point of it, with shares that sum to one.
@@ -213,7 +213,7 @@ impl<T: Laned, const D: usize> CommonGrid<'_, T, D> {
         // The first node that a particle reaches follows its place, and no box of one is larger than two cells.
         let home = |steps: i32, half: T| {
             let corner = self.lattice.position(std::array::from_fn(|k| cell[k] + steps));
-            (self.kernels.home)(self.lattice, (corner, Vector([half; D])))
+            (self.kernels.home)(self.lattice, (corner, half))
         };
         let [low, high] = [home(0, self.lattice.cell), home(1, T::ZERO)];
         each_cell([three(low), three(high)], &mut |at| {

@@ -77,16 +77,15 @@ impl Choice for Dimension {
 impl Choice for BasisKind {
     const WORDS: &'static [(&'static str, Self, &'static str)] = &[
         ("gimp", BasisKind::Gimp, "Tent functions averaged over the particle's box (uniform GIMP)."),
-        (
-            "cpdi",
-            BasisKind::Cpdi,
-            "Mean tent functions of the corners of a domain that deforms with the particle: for bodies that \
-             are stretched or turned far.",
-        ),
         ("linear", BasisKind::Linear, "Tent functions at the particle's centre."),
         ("spline", BasisKind::Spline, "Quadratic B-splines of the particle's centre: smooth slopes."),
         ("cubic", BasisKind::Cubic, "Cubic B-splines of the particle's centre: slopes without kinks."),
     ];
+    const ELSEWHERE: &'static [(&'static str, &'static str)] = &[(
+        "cpdi",
+        "here: no domains that deform; bodies that stay whole stretch, turn and bend without them on grids of their \
+         own, interior = \"reference\", the default of elastic ones: leave `basis` out",
+    )];
 }
 
 impl Choice for Interior {

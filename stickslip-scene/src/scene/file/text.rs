@@ -24,6 +24,18 @@ pub struct Text(DocumentNode);
 pub trait Choice: Copy + 'static {
     /// Each word with its meaning and one sentence for the schema.
     const WORDS: &'static [(&'static str, Self, &'static str)];
+
+    /// Words that other programs have, in lower case, and what there is here for each.
+    const ELSEWHERE: &'static [(&'static str, &'static str)] = &[];
+
+    /// What helps whoever wrote another word.
+    fn help(word: &str) -> Option<String> {
+        let elsewhere = Self::ELSEWHERE.iter().find(|(name, _)| word.eq_ignore_ascii_case(name));
+        match elsewhere {
+            Some((_, answer)) => Some(answer.to_string()),
+            None => did_you_mean(word, Self::WORDS.iter().map(|(name, ..)| *name)),
+        }
+    }
 }
 
 /// One of a few words, or a parameter in braces that holds one.
@@ -171,10 +183,9 @@ impl<C: Choice> Word<C> {
         let text = Text(self.node.clone());
         let word = text.value(context)?;
         let chosen = C::WORDS.iter().find(|(name, ..)| *name == word);
-        chosen.map(|(_, meaning, _)| *meaning).ok_or_else(|| {
-            let names = C::WORDS.iter().map(|(name, ..)| *name);
-            text.refused(&word, Self::wanted()).help(did_you_mean(&word, names))
-        })
+        chosen
+            .map(|(_, meaning, _)| *meaning)
+            .ok_or_else(|| text.refused(&word, Self::wanted()).help(C::help(&word)))
     }
 
     /// The fault of a word that is not allowed beside others.

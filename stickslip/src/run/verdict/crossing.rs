@@ -23,7 +23,7 @@ impl Check for CrossingCheck {
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
         match look.scene.discretization.basis {
             BasisKind::Linear => look.on_grid().filter_map(|body| crossing(look, body)).collect(),
-            BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline | BasisKind::Cubic => Vec::new(),
+            BasisKind::Gimp | BasisKind::Spline | BasisKind::Cubic => Vec::new(),
         }
     }
 }

@@ -497,7 +497,7 @@ shape.box = { min = [0, 0], max = [1, 1] }
     #[test]
     fn no_advice_names_what_the_scene_has_already() {
         let mut scene = parse("scene", SCENE, &[]).unwrap().scene;
-        let bases = [(BasisKind::Gimp, "gimp"), (BasisKind::Cpdi, "cpdi"), (BasisKind::Spline, "spline")];
+        let bases = [(BasisKind::Gimp, "gimp"), (BasisKind::Cubic, "cubic"), (BasisKind::Spline, "spline")];
         let transfers = [(Transfer::Rflip, "rflip"), (Transfer::Apic, "apic"), (Transfer::Flip, "flip")];
         for (basis, word) in bases {
             for (transfer, transfer_word) in transfers {

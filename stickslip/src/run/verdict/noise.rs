@@ -49,12 +49,7 @@ impl Check for NoiseCheck {
             return "what moves loses its motion to it: try smaller cells; see the column `damping` of energy.csv";
         }
         match scene.discretization.basis {
-            BasisKind::Gimp | BasisKind::Linear => {
-                "what bends, twists, spins or rolls loses its motion to it: try interior = \"reference\" for bodies \
-                 that stay whole, smaller cells; space.basis = \"cpdi\" keeps more of a swing in place, hardly more of \
-                 rolling; see the column `damping` of energy.csv"
-            }
-            BasisKind::Cpdi | BasisKind::Cubic => {
+            BasisKind::Gimp | BasisKind::Linear | BasisKind::Cubic => {
                 "what bends, twists, spins or rolls loses its motion to it: try interior = \"reference\" for bodies \
                  that stay whole, smaller cells; see the column `damping` of energy.csv"
             }

@@ -20,17 +20,9 @@ impl Check for TearingCheck {
         HealthCheck::Tearing
     }
 
-    fn advice(&self, scene: &Scene) -> &'static str {
-        match scene.discretization.basis {
-            BasisKind::Cpdi => {
-                "no law tears it, the grid lost it: try interior = \"reference\" for bodies that stay whole, more \
-                 particles_per_side, a smaller load"
-            }
-            _ => {
-                "no law tears it, the grid lost it: try interior = \"reference\" for bodies that stay whole, \
-                 space.basis = \"cpdi\" for a pull along one axis, a smaller load"
-            }
-        }
+    fn advice(&self, _: &Scene) -> &'static str {
+        "no law tears it, the grid lost it: try interior = \"reference\" for bodies that stay whole, more \
+         particles_per_side, a smaller load"
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
@@ -74,7 +66,7 @@ fn tear(look: &CheckInputs, body: usize) -> Option<Tear> {
     let parted = |&[a, b]: &[u32; 2]| {
         let (a, b) = (&now[a as usize], &now[b as usize]);
         let (apart, reach) = (minus(a.position, b.position), reach(look, a, b));
-        let excess = (0..3).map(|i| apart[i].abs() / reach[i]).fold(0.0, f64::max);
+        let excess = (0..3).map(|i| apart[i].abs() / reach).fold(0.0, f64::max);
         (excess > 1.0).then(|| (excess, middle(a.position, b.position)))
     };
     let mut parted: Vec<(f64, [f64; 3])> = pairs.iter().filter_map(parted).collect();
@@ -92,14 +84,12 @@ fn tear(look: &CheckInputs, body: usize) -> Option<Tear> {
     Some(Tear { share: count as f64 / pairs.len() as f64, excess, position })
 }
 
-/// Distance along each axis up to which two particles share a node wherever they lie [m].
-fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> [f64; 3] {
+/// Distance along an axis up to which two particles share a node wherever they lie [m].
+fn reach(look: &CheckInputs, a: &TracedParticle, b: &TracedParticle) -> f64 {
     let cell = look.scene.discretization.cell;
     match look.scene.discretization.basis {
-        BasisKind::Linear => [cell; 3],
-        BasisKind::Gimp | BasisKind::Cpdi | BasisKind::Spline | BasisKind::Cubic => {
-            std::array::from_fn(|i| cell + a.half_sides[i] + b.half_sides[i])
-        }
+        BasisKind::Linear => cell,
+        BasisKind::Gimp | BasisKind::Spline | BasisKind::Cubic => cell + a.half_side + b.half_side,
     }
 }
 
