@@ -53,9 +53,14 @@ impl<const D: usize> Interior<D> {
         interior
     }
 
-    /// Followers take the places and velocities of what they follow: x_s = sum e x_m.
+    /// Followers take the places and velocities of what they follow: x_s = sum e x_m, v_s = sum e v_m.
     pub fn follow(&mut self) {
         self.form.follow_places(&mut self.places);
+        self.follow_velocities();
+    }
+
+    /// Followers take the velocities of what they follow, where these alone have changed.
+    pub fn follow_velocities(&mut self) {
         self.form.follow(&mut self.velocities);
     }
 
@@ -128,7 +133,7 @@ impl<const D: usize> Interior<D> {
                 Some(inertia) => Vector::from_fn(|i| force[i] / (mass + inertia[i])) * dt,
             };
         }
-        self.follow();
+        self.follow_velocities();
     }
 
     /// Weight of a node: images pull the other way across a mirror [N].
@@ -168,13 +173,9 @@ impl<const D: usize> Interior<D> {
 
     /// x += dt v, and followers after it.
     pub fn advance(&mut self, dt: f64) {
-        for node in 0..self.masses.len() {
-            if self.masses[node] > 0.0 {
-                let velocity = self.velocities[node];
-                self.places[node] += velocity * dt;
-            }
-        }
-        self.follow();
+        let moved = self.places.iter_mut().zip(&self.velocities).zip(&self.masses);
+        moved.filter(|(_, mass)| **mass > 0.0).for_each(|((place, velocity), _)| *place += *velocity * dt);
+        self.form.follow_places(&mut self.places);
     }
 
     /// sum N_I a_I of values at the nodes.
@@ -212,6 +213,12 @@ impl<const D: usize> Interior<D> {
     /// Momentum [N s].
     pub fn momentum(&self) -> Vector<f64, D> {
         self.carried().map(|(mass, _, velocity)| velocity * mass).sum()
+    }
+
+    /// Power of the forces on the nodes and of their weight [W].
+    pub fn power(&self, gravity: Vector<f64, D>) -> f64 {
+        let nodes = self.forces.iter().zip(&self.velocities).enumerate();
+        nodes.map(|(node, (force, velocity))| (*force + self.weight(node, gravity)).dot(*velocity)).sum()
     }
 
     /// Kinetic energy [J].

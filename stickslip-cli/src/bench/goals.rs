@@ -91,6 +91,9 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
     let [gimp, single] =
         [["gimp", "double", "last"], ["linear", "single", "last"]].map(|how| findings.one("P1", how));
     let [cube, blocks, wide] = ["P1", "P2", "P4"].map(default);
+    let own = findings.own("P1").next();
+    let own_packs: Vec<&Measured> = findings.own("P3").filter(|pack| pack.bodies >= MANY_BALLS).collect();
+    let own_pack_rates: Vec<f64> = own_packs.iter().map(|pack| pack.rate).collect();
     let contact = |basis| {
         let [on, off] =
             [BLOCKS_IN_CONTACT, BLOCKS_APART].map(|variant| rate(findings.blocks(variant, basis)));
@@ -101,8 +104,9 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
     let pack_memory: Vec<f64> = packs.iter().filter_map(|pack| pack.memory).collect();
     let growth: Vec<f64> = findings.of("P5").map(|measured| measured.rate).collect();
     let millions = |rate: Option<f64>| rate.map(|rate| rate / 1e6);
-    let slowest_pack =
-        (!pack_rates.is_empty()).then(|| pack_rates.iter().copied().fold(f64::INFINITY, f64::min));
+    let slowest =
+        |rates: &[f64]| (!rates.is_empty()).then(|| rates.iter().copied().fold(f64::INFINITY, f64::min));
+    let slowest_pack = slowest(&pack_rates);
 
     let mut goals = vec![
         goal(
@@ -134,11 +138,34 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
         goal("P4 memory over P1's", ratio(memory(wide), memory(cube)), (AtMost, 1.02, None)),
         goal("P5 time a particle: most over least", extremes(&growth), (AtMost, 1.1, None)),
         goal("P1 bytes of memory a particle", memory(cube), (AtMost, 450.0, Some(300.0))),
+        goal(
+            "P1 own grid, M particle-steps per core-second",
+            millions(rate(own)),
+            (AtLeast, 30.0, Some(45.0)),
+        ),
+        goal(
+            "P3 own grids, time a particle over P1's",
+            ratio(rate(own), slowest(&own_pack_rates)),
+            (AtMost, 2.5, Some(1.5)),
+        ),
+        goal(
+            "P3 own grids, time a particle: most over least",
+            extremes(&own_pack_rates),
+            (AtMost, 1.5, None),
+        ),
     ];
+    let quadratic = findings.peers.iter().filter(|peer| peer.basis == "quadratic");
+    let best = quadratic.map(|peer| median(&peer.repetitions)).reduce(f64::max);
+    goals.push(goal(
+        "P1 own grid over the best of quadratic peers",
+        ratio(rate(own), best),
+        (AtLeast, 8.0, None),
+    ));
     for (measured, speedup) in findings.speedups() {
         let threads = measured.case.threads;
-        let name =
-            format!("{} {} on {threads} threads over one", measured.case.problem, measured.case.scheme.basis);
+        let scheme = measured.case.scheme;
+        let how = if scheme.is_reference() { "own grids" } else { scheme.basis };
+        let name = format!("{} {how} on {threads} threads over one", measured.case.problem);
         goals.push(goal(&name, Some(speedup), (AtLeast, 0.95 * threads as f64, None)));
     }
     for run in findings.end_to_end {
@@ -172,8 +199,17 @@ pub fn goals(findings: Findings) -> Vec<Goal> {
 }
 
 impl<'a> Findings<'a> {
-    /// What was measured of a problem on one thread.
+    /// What was measured of a problem on the common grid, on one thread.
     fn of(self, problem: &'static str) -> impl Iterator<Item = &'a Measured> {
+        self.alone(problem).filter(|measured| !measured.case.scheme.is_reference())
+    }
+
+    /// The same on grids of their own.
+    fn own(self, problem: &'static str) -> impl Iterator<Item = &'a Measured> {
+        self.alone(problem).filter(|measured| measured.case.scheme.is_reference())
+    }
+
+    fn alone(self, problem: &'static str) -> impl Iterator<Item = &'a Measured> {
         self.results
             .iter()
             .filter(move |measured| measured.case.problem == problem && measured.case.threads == 1)
@@ -236,7 +272,7 @@ mod tests {
         [basis, precision, stress_update]: [&'static str; 3],
         rate: f64,
     ) -> Measured {
-        let scheme = BenchScheme { basis, precision, stress_update };
+        let scheme = BenchScheme { basis, precision, stress_update, ..BenchScheme::default() };
         Measured {
             case: BenchCase {
                 problem,
@@ -302,6 +338,12 @@ mod tests {
         let mut parallel = measured("P1", plain, 19.5e6);
         parallel.case.threads = 2;
         results.push(parallel);
+        for (problem, bodies, rate) in [("P1", 1, 32e6), ("P3", 8, 10e6), ("P3", 64, 16e6), ("P3", 216, 20e6)]
+        {
+            let mut own = measured(problem, plain, rate);
+            (own.bodies, own.case.scheme) = (bodies, BenchScheme::reference());
+            results.push(own);
+        }
         let peer = |program: &str, rate| PeerResult {
             program: program.into(),
             version: String::new(),
@@ -312,7 +354,10 @@ mod tests {
             repetitions: vec![rate],
             first_step: 0.0,
         };
-        let peers = [peer("Warp", 10e6), peer("Taichi", 4e6), peer("Taichi, serial", 9e6)];
+        let mut peers = vec![peer("Warp", 10e6), peer("Taichi", 4e6), peer("Taichi, serial", 9e6)];
+        for (program, rate) in [("Warp", 4e6), ("Taichi, serial", 3e6)] {
+            peers.push(PeerResult { basis: "quadratic".into(), ..peer(program, rate) });
+        }
         let goals =
             goals(Findings { results: &results, end_to_end: &[], on_ranks: &[], models: &[], peers: &peers });
 
@@ -334,5 +379,9 @@ mod tests {
         assert_eq!(value(&goals, "P1 linear f64 over Warp"), Some((2.0, true)));
         assert_eq!(value(&goals, "P1 linear f64 over Taichi"), Some((5.0, false)));
         assert_eq!(goals.iter().filter(|goal| goal.name.contains("serial")).count(), 0);
+        assert_eq!(value(&goals, "P1 own grid, M"), Some((32.0, true)));
+        assert_eq!(value(&goals, "P1 own grid over"), Some((8.0, true)));
+        assert_eq!(value(&goals, "P3 own grids, time a particle over"), Some((2.0, true)));
+        assert_eq!(value(&goals, "P3 own grids, time a particle: most"), Some((1.25, true)));
     }
 }

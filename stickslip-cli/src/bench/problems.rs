@@ -6,6 +6,8 @@ use std::fmt::{Display, Write as _};
 /// How a problem is computed, in the words of scene files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct BenchScheme {
+    /// `grid` or `reference`: a body on a grid of its own has neither a choice of basis nor of stress update.
+    pub interior: &'static str,
     /// `linear` or `gimp`.
     pub basis: &'static str,
     /// `double` or `single`.
@@ -15,9 +17,9 @@ pub struct BenchScheme {
 }
 
 impl Default for BenchScheme {
-    /// Linear functions, and what scene files have by default.
+    /// Linear functions on the common grid, and what scene files have by default.
     fn default() -> Self {
-        BenchScheme { basis: "linear", precision: "double", stress_update: "modified-last" }
+        BenchScheme { interior: "grid", basis: "linear", precision: "double", stress_update: "modified-last" }
     }
 }
 
@@ -59,11 +61,25 @@ impl BenchCase {
         let BenchScheme { basis, stress_update, .. } = self.scheme;
         let number = self.scheme.number();
         let threads = if self.threads == 1 { String::new() } else { format!(", {} threads", self.threads) };
-        format!("{} {}, {basis} {number} {stress_update}{threads}", self.problem, self.variant)
+        let how = match self.scheme.is_reference() {
+            true => format!("own grid {number}"),
+            false => format!("{basis} {number} {stress_update}"),
+        };
+        format!("{} {}, {how}{threads}", self.problem, self.variant)
     }
 }
 
 impl BenchScheme {
+    /// Bodies on grids of their own.
+    pub fn reference() -> Self {
+        BenchScheme { interior: "reference", ..BenchScheme::default() }
+    }
+
+    /// Whether bodies are on grids of their own.
+    pub fn is_reference(&self) -> bool {
+        self.interior == "reference"
+    }
+
     /// `f64` or `f32`.
     pub fn number(&self) -> &'static str {
         if self.precision == "single" { "f32" } else { "f64" }
@@ -142,6 +158,8 @@ pub fn cases(extent: BenchExtent, threads: usize) -> Vec<BenchCase> {
             add("P4", "wide domain", (linear, 1), cube(linear, extent.cells(), WIDE_MARGIN));
         }
     }
+    let own = BenchScheme::reference();
+    add("P1", "cube", (own, 1), cube(own, extent.cells(), 32));
     for scheme in [linear, gimp] {
         let cells = extent.cells();
         let size: (_, &dyn Display) = ("cells", &cells);
@@ -150,11 +168,13 @@ pub fn cases(extent: BenchExtent, threads: usize) -> Vec<BenchCase> {
             add("P2", variant, (scheme, 1), (8 * cells.pow(3), with(BLOCKS, scheme, values)));
         }
     }
-    for &side in extent.balls() {
+    for (scheme, &side) in
+        [linear, own].into_iter().flat_map(|scheme| extent.balls().iter().map(move |side| (scheme, side)))
+    {
         let count = side.pow(3);
         let variant = format!("{count} ball{}", if count == 1 { "" } else { "s" });
         for &threads in if side == 4 { &in_parallel[..] } else { &[1] } {
-            add("P3", &variant, (linear, threads), (BALL * count, balls(linear, side)));
+            add("P3", &variant, (scheme, threads), (BALL * count, balls(scheme, side)));
         }
     }
     for &cells in extent.growth() {
@@ -190,7 +210,7 @@ fn schemes(extent: BenchExtent) -> Vec<BenchScheme> {
                 let few =
                     stress_update == "last" || (stress_update == "modified-last" && precision == "double");
                 if extent == BenchExtent::Full || few {
-                    schemes.push(BenchScheme { basis, precision, stress_update });
+                    schemes.push(BenchScheme { basis, precision, stress_update, ..BenchScheme::default() });
                 }
             }
         }
@@ -204,10 +224,15 @@ fn cube(scheme: BenchScheme, cells: usize, margin: usize) -> (usize, String) {
     (8 * cells.pow(3), with(CUBE, scheme, &[("cells", &cells), ("margin", &margin), ("turn", &turn)]))
 }
 
-/// A scene with other parameters than its file has.
+/// A scene with other parameters than its file has; without the keys that bodies on grids of their own have not.
 fn with(scene: &str, scheme: BenchScheme, others: &[(&str, &dyn Display)]) -> String {
-    let BenchScheme { basis, precision, stress_update } = scheme;
-    let words = [("basis", basis), ("precision", precision), ("stress_update", stress_update)];
+    let BenchScheme { interior, basis, precision, stress_update } = scheme;
+    let words = [
+        ("interior", interior),
+        ("basis", basis),
+        ("precision", precision),
+        ("stress_update", stress_update),
+    ];
     let mut values: Vec<(String, String)> =
         words.iter().map(|(name, word)| (format!("{name} = "), format!("\"{word}\""))).collect();
     values.extend(others.iter().map(|(name, value)| (format!("{name} = "), value.to_string())));
@@ -216,6 +241,9 @@ fn with(scene: &str, scheme: BenchScheme, others: &[(&str, &dyn Display)]) -> St
     for line in scene.lines() {
         if line.starts_with('[') {
             within = line == "[parameters]";
+        }
+        if scheme.is_reference() && ["basis = ", "stress_update = "].iter().any(|key| line.starts_with(key)) {
+            continue;
         }
         let replaced = values.iter().find(|(start, _)| within && line.starts_with(start.as_str()));
         match replaced {
@@ -306,12 +334,30 @@ mod tests {
 
     #[test]
     fn parameters_are_replaced_where_they_stand() {
-        let scheme = BenchScheme { basis: "gimp", precision: "single", stress_update: "first" };
+        let scheme = BenchScheme {
+            basis: "gimp",
+            precision: "single",
+            stress_update: "first",
+            ..BenchScheme::default()
+        };
         let loaded = stickslip::scene::parse("bench", &cube(scheme, 8, 4).1, &[]).unwrap();
         let scene = loaded.scene;
         assert_eq!(scene.discretization.basis, stickslip::scene::BasisKind::Gimp);
         assert_eq!(scene.precision, stickslip::scene::Precision::Single);
         assert_eq!(scene.time.stress_update, stickslip::scene::StressUpdate::First);
         assert_eq!(scene.domain.unwrap().max, [12.0 * 0.03125; 3]);
+    }
+
+    #[test]
+    fn bodies_are_where_the_scheme_says() {
+        for (scheme, interior) in [
+            (BenchScheme::default(), stickslip::scene::Interior::Grid),
+            (BenchScheme::reference(), stickslip::scene::Interior::Reference),
+        ] {
+            for scene in [cube(scheme, 8, 4).1, balls(scheme, 2)] {
+                let scene = stickslip::scene::parse("bench", &scene, &[]).unwrap().scene;
+                assert!((0..scene.bodies.len()).all(|body| scene.interior(body) == interior));
+            }
+        }
     }
 }

@@ -65,7 +65,7 @@ impl PdfPage {
         content.transform([POINT, 0.0, 0.0, -POINT, 0.0, size[1] as f32 * POINT]);
         content.set_line_join(LineJoinStyle::RoundJoin);
         content.set_line_cap(LineCapStyle::ButtCap);
-        let fonts = [dejavu::sans::regular(), dejavu::sans::bold()].map(EmbeddedFont::new);
+        let fonts = super::fonts().map(EmbeddedFont::new);
         PdfPage { size, content, fonts, opacities: Vec::new() }
     }
 

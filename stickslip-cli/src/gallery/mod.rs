@@ -73,8 +73,8 @@ macro_rules! exhibits {
     };
 }
 
-/// All of them, in the order in which they are listed.
-pub const EXHIBITS: &[Exhibit] = exhibits! {
+/// All of them, in the order in which they are listed. A static: of a constant the program has a copy for each use.
+pub static EXHIBITS: &[Exhibit] = exhibits! {
     "wheel" [] {
         seconds: 3.0, look: ["--color", "von_mises"], picture: "430x310", animation: "400x290",
         check: "energy that rolling lost over what the polymer dissipated", loss_of_wheel, [0.97, 1.03]

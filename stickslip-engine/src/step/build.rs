@@ -10,7 +10,6 @@ use super::unbounded::{Unbounded, reach};
 use super::walls::WallSums;
 use super::watch::Stopwatch;
 use super::{Engine, ParticleLoop};
-use crate::Compiled;
 use crate::body::{Body, BodyHere, Matter, Particle};
 use crate::boundary::{Boundary, Wall};
 use crate::check;
@@ -33,6 +32,7 @@ use crate::scene::{
 };
 use crate::tensor::{Matrix, Real, Symmetric, Vector, cross};
 use crate::transfer::{has_spin, pic_share, rotation};
+use crate::{Compiled, Kernels};
 use std::collections::HashSet;
 use std::sync::Arc;
 use stickslip_reference::cells::Table;
@@ -51,6 +51,22 @@ pub fn build(scene: &Scene) -> Result<Box<dyn Simulation>, Problem> {
 /// What [`check::problems`] finds.
 pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>, Problem> {
     Ok(build_for(scene, path, Keeping::All)?)
+}
+
+/// The simulation of a scene in double precision by these kernels of the plane and of space, one particle at a time: for
+/// oracles.
+///
+/// # Errors
+/// What [`check::problems`] finds.
+pub fn build_by(
+    scene: &Scene,
+    (plane, space): (&'static Kernels<f64, 2>, &'static Kernels<f64, 3>),
+) -> Result<Box<dyn Simulation>, Problem> {
+    let (path, keeping) = (ParticleLoop::OneLane, Keeping::All);
+    Ok(match scene.dimension {
+        Dimension::Space => Box::new(Engine { kernels: space, ..Engine::of(scene, path, keeping)? }),
+        _ => Box::new(Engine { kernels: plane, ..Engine::of(scene, path, keeping)? }),
+    })
 }
 
 /// One rank's part of the simulation of a scene, see [`Ranks`]. All ranks make the same calls of it in the same order:
@@ -159,29 +175,19 @@ fn build_for(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Box<
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Double) => {
             Box::new(Engine::<f64, 2>::of(scene, path, keeping)?)
         }
-        #[cfg(not(test))]
         (Dimension::PlaneStrain | Dimension::PlaneStress, Precision::Single) => {
             Box::new(Engine::<f32, 2>::of(scene, path, keeping)?)
         }
         (Dimension::Space, Precision::Double) => Box::new(Engine::<f64, 3>::of(scene, path, keeping)?),
-        #[cfg(not(test))]
         (Dimension::Space, Precision::Single) => Box::new(Engine::<f32, 3>::of(scene, path, keeping)?),
-        // They would double what is compiled for the tests of this crate, which do not ask for them.
-        #[cfg(test)]
-        (_, Precision::Single) => unreachable!("tests of this crate are in double precision"),
     })
 }
 
 impl<T: Compiled<D>, const D: usize> Engine<T, D> {
-    /// The simulation of a scene of this dimension and precision.
+    /// The simulation of a scene of this dimension and precision with these particles.
     ///
     /// # Errors
     /// What [`check::problems`] finds.
-    pub fn new(scene: &Scene, path: ParticleLoop) -> Result<Self, Problem> {
-        Self::of(scene, path, Keeping::All)
-    }
-
-    /// The same with these particles.
     fn of(scene: &Scene, path: ParticleLoop, keeping: Keeping) -> Result<Self, Problem> {
         check::problems(scene)?;
         let known = |walked: &Option<Walked>| {

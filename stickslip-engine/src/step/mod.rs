@@ -39,8 +39,6 @@ mod leave;
 mod limit;
 mod loads;
 mod mechanism;
-#[cfg(test)]
-mod naive_tests;
 mod reference;
 mod relax;
 mod saving;
@@ -57,7 +55,7 @@ mod writing;
 pub use crate::pass::ParticleLoop;
 pub(crate) use among::Find;
 pub(crate) use build::{Shareable, build_empty, build_share};
-pub use build::{build, build_among, build_on};
+pub use build::{build, build_among, build_by, build_on};
 pub(crate) use build::{heated_bodies, own_columns};
 pub(crate) use mechanism::{JointSums, TouchForce};
 pub(crate) use reference::{ReferenceBody, SavedNodes};

@@ -140,16 +140,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let (bodies, kernels) = (self.shown(), self.kernels);
-        let sum = |range: Range<usize>| {
-            (range.start, self.with_nodes(range.start, bodies[range.start].totals(kernels)))
-        };
         known
-            .get_or_insert_with(|| match &self.among {
-                Some(among) => {
-                    let all = among.totals(bodies, kernels);
-                    all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals))).collect()
-                }
-                None => by_parts(bodies.len(), 1, sum).into(),
+            .get_or_insert_with(|| {
+                let works = self.works_of_half_a_step();
+                let sum = |range: Range<usize>| {
+                    let totals = bodies[range.start].totals(kernels);
+                    (range.start, self.with_nodes(range.start, totals, &works))
+                };
+                let Some(among) = &self.among else { return by_parts(bodies.len(), 1, sum).into() };
+                let all = among.totals(bodies, kernels);
+                all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals, &works))).collect()
             })
             .clone()
     }
@@ -161,7 +161,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             Some(among) => among.totals_of(body, self.kernels),
             None => body.totals(self.kernels),
         };
-        self.with_nodes(number, totals)
+        self.with_nodes(number, totals, &self.works_of_half_a_step())
     }
 
     /// What a snapshot has of some particles.

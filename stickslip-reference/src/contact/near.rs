@@ -3,6 +3,7 @@
 use super::images::{PeriodLengths, pairs};
 use super::look::{BACK, came_through, looks_at};
 use super::{Deforming, Memory, Met, Obstacle, STIFFNESS, Touch, look, relative_velocity};
+use crate::interior::Interior;
 use rayon::prelude::*;
 use stickslip_mechanics::geometry::form::digits;
 use stickslip_mechanics::geometry::{Shape, SignedDistance};
@@ -168,11 +169,24 @@ impl<const D: usize> Neighbours<D> {
         meet: &(dyn Fn(usize, Partner) -> bool + Sync),
         lengths: PeriodLengths<D>,
     ) -> Self {
+        let hulls: Vec<_> = bodies.par_iter().map(hull).collect();
+        let folds = |a: usize, around: &[Vector<f64, D>; 2]| may_fold(&bodies[a]) || lengths.is_long(around);
+        // Of a body that is far from all others nobody asks where its points are.
+        let mut is_alone: Vec<bool> = (0..bodies.len())
+            .map(|a| {
+                let beside = |r: usize| lengths.overlap(&hulls[a], &obstacles[r].bounds().map(Vector::of));
+                !folds(a, &hulls[a]) && !(0..obstacles.len()).any(beside)
+            })
+            .collect();
+        pairs(&hulls, lengths).into_iter().flatten().for_each(|a| is_alone[a] = false);
         let places = |a: usize| -> Vec<Vector<f64, D>> {
-            (0..bodies[a].surface.len()).map(|point| place(&bodies[a], point)).collect()
+            let points = if is_alone[a] { 0 } else { bodies[a].surface.len() };
+            (0..points).map(|point| place(&bodies[a], point)).collect()
         };
         let places: Vec<Vec<Vector<f64, D>>> = (0..bodies.len()).into_par_iter().map(places).collect();
-        let boxes: Vec<_> = bodies.iter().zip(&places).map(|(body, places)| grown(body, places)).collect();
+        let boxes: Vec<_> = (0..bodies.len())
+            .map(|a| if is_alone[a] { hulls[a] } else { grown(&bodies[a], &places[a]) })
+            .collect();
         let mut near = vec![Vec::new(); bodies.len()];
         for [a, b] in pairs(&boxes, lengths) {
             for [a, b] in [[a, b], [b, a]] {
@@ -182,8 +196,7 @@ impl<const D: usize> Neighbours<D> {
             }
         }
         for (a, near) in near.iter_mut().enumerate() {
-            let may_meet = may_fold(&bodies[a]) || lengths.is_long(&boxes[a]);
-            if may_meet && meet(a, Partner::Deforming(a)) {
+            if folds(a, &boxes[a]) && meet(a, Partner::Deforming(a)) {
                 near.push(a);
             }
             near.sort_unstable();
@@ -595,12 +608,22 @@ impl<const D: usize> Point<'_, '_, D> {
     }
 }
 
-/// A box around the points of a body's surface and a margin.
-fn grown<const D: usize>(body: &Deforming<'_, D>, places: &[Vector<f64, D>]) -> [Vector<f64, D>; 2] {
+/// A box around places of a body and a margin.
+fn grown<'a, const D: usize>(
+    body: &Deforming<'_, D>,
+    places: impl IntoIterator<Item = &'a Vector<f64, D>>,
+) -> [Vector<f64, D>; 2] {
     let margin = Vector([MARGIN * body.interior.form.cell; D]);
     let none = [Vector([f64::INFINITY; D]), Vector([f64::NEG_INFINITY; D])];
-    let [low, high] = places.iter().fold(none, |[low, high], at| {
+    let [low, high] = places.into_iter().fold(none, |[low, high], at| {
         [Vector::from_fn(|k| low[k].min(at[k])), Vector::from_fn(|k| high[k].max(at[k]))]
     });
     [low - margin, high + margin]
+}
+
+/// A box around all nodes that move a body, between which its surface lies.
+fn hull<const D: usize>(body: &Deforming<'_, D>) -> [Vector<f64, D>; 2] {
+    let Interior { form, masses, places, .. } = &*body.interior;
+    let free = places.iter().zip(masses).filter(|(_, mass)| **mass > 0.0).map(|(place, _)| place);
+    grown(body, free.chain(form.followers.nodes.iter().map(|&node| &places[node as usize])))
 }

@@ -624,12 +624,37 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         })
     }
 
+    /// What stress and weight do to each of these bodies in half of the next step, see [`Self::with_nodes`] [J]. All
+    /// ranks know it.
+    pub(super) fn works_of_half_a_step(&self) -> Vec<f64> {
+        let gravity = Vector::of(self.settings.gravity.constant().unwrap_or_default());
+        // Before the first step there is no stress.
+        let half = self.state.signal.map_or(0.0, |_| 0.5 * self.stable());
+        let mut works = vec![0.0; self.settings.references.len()];
+        let here = (self.settings.references.iter().zip(&self.state.references.nodes).enumerate())
+            .filter(|(_, (of, _))| !self.state.bodies[of.body].particles.is_empty());
+        let own: Vec<(usize, f64)> =
+            here.map(|(place, (_, nodes))| (place, half * nodes.power(gravity))).collect();
+        let all = match &self.among {
+            Some(among) if !works.is_empty() => among.gathered(&own).concat(),
+            _ => own,
+        };
+        all.into_iter().for_each(|(place, work)| works[place] = work);
+        works
+    }
+
     /// What a body adds up to, of its nodes what is known better there: momentum, spin and kinetic energy; and what its
-    /// part of the layer stores where it touches.
-    pub(super) fn with_nodes(&self, body: usize, mut totals: Totals) -> Totals {
+    /// part of the layer stores where it touches. Nodes have their velocities half a step before their places: the
+    /// kinetic energy is that between the velocities before and after these, so that with the strain energy it stays as
+    /// it is where a body swings freely:
+    ///
+    /// ```text
+    /// K = sum M_I v_I(t - dt/2) . v_I(t + dt/2) / 2 = sum M_I v_I^2 / 2 + dt/2 sum v_I . (f_I + M_I g)
+    /// ```
+    pub(super) fn with_nodes(&self, body: usize, mut totals: Totals, works: &[f64]) -> Totals {
         let Some(place) = self.reference_of(body) else { return totals };
         let nodes = &self.state.references.nodes[place];
-        totals.kinetic = nodes.kinetic();
+        totals.kinetic = nodes.kinetic() + works[place];
         totals.strain += self.state.references.layers.get(place).map_or(0.0, |layers| layers.energy);
         totals.momentum = nodes.momentum().space();
         let mut sums = [[0.0; 3]; 2];

@@ -107,7 +107,7 @@ impl<const D: usize> Begun<D> {
                     sums.iter_mut().zip(own).for_each(|(sum, own)| sum.add(own));
                 }
             }
-            nodes.follow();
+            nodes.follow_velocities();
         }
         *accelerations = match slowing.relaxing {
             Relaxing::AsGrid(_) => Vec::new(),

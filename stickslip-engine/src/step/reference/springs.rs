@@ -83,7 +83,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                     *velocity += *pull * (dt * force / mass);
                 }
             }
-            nodes.follow();
+            nodes.follow_velocities();
         }
         SpringStep { direction: direction.0, force, stiffness: spring.stiffness * softer, driven, gone: 0.0 }
     }

@@ -7,12 +7,11 @@
 //! Expected: after 40 steps positions agree within 1e-10 of the bodies' size, velocities within 1e-9 of their speed:
 //! sums are taken in another order, and a stiff law turns round-off of strain into forces.
 
-use crate::door::ParticleSnapshot;
-use crate::door::Simulation;
-use crate::lanes::Processor;
-use crate::scene::{Dimension, Scene};
-use crate::step::{Engine, ParticleLoop, build_on};
-use crate::{Compiled, Kernels};
+use stickslip_engine::Kernels;
+use stickslip_engine::door::ParticleSnapshot;
+use stickslip_engine::lanes::Processor;
+use stickslip_engine::scene::parse;
+use stickslip_engine::step::{ParticleLoop, build_by, build_on};
 
 fn scene(dimension: &str, basis: &str, time: &str, (volume_change, damping): (&str, &str)) -> String {
     let v = |x: &str, y: &str, z: &str| match dimension {
@@ -69,23 +68,14 @@ fn scene(dimension: &str, basis: &str, time: &str, (volume_change, damping): (&s
     )
 }
 
-/// By naive kernels.
-fn naive<const D: usize>(scene: &Scene) -> Box<dyn Simulation>
-where
-    f64: Compiled<D>,
-{
-    let mut engine = Engine::<f64, D>::new(scene, ParticleLoop::OneLane).expect("a sound scene");
-    engine.kernels = Kernels::naive(scene.discretization.basis);
-    Box::new(engine)
-}
-
 fn outcome(scene: &str, path: Option<ParticleLoop>, steps: usize) -> ParticleSnapshot {
-    let loaded = crate::scene::parse("naive.toml", scene, &[]).unwrap_or_else(|e| panic!("{e:?}\n{scene}"));
-    let mut simulation = match (path, loaded.scene.dimension) {
-        (Some(path), _) => build_on(&loaded.scene, path).unwrap_or_else(|e| panic!("{e:?}\n{scene}")),
-        (None, Dimension::Space) => naive::<3>(&loaded.scene),
-        (None, _) => naive::<2>(&loaded.scene),
+    let loaded = parse("naive.toml", scene, &[]).unwrap_or_else(|e| panic!("{e:?}\n{scene}"));
+    let basis = loaded.scene.discretization.basis;
+    let built = match path {
+        Some(path) => build_on(&loaded.scene, path),
+        None => build_by(&loaded.scene, (Kernels::naive(basis), Kernels::naive(basis))),
     };
+    let mut simulation = built.unwrap_or_else(|e| panic!("{e:?}\n{scene}"));
     for _ in 0..steps {
         simulation.step(f64::INFINITY).unwrap_or_else(|e| panic!("{e}\n{scene}"));
     }

@@ -1,0 +1,6 @@
+//! The engine as others see it: what needs a simulation of a scene. Here and not beside what is tested, so that the
+//! engine is compiled once.
+
+mod footprint;
+mod naive;
+mod shared;
