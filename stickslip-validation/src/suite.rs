@@ -1,6 +1,7 @@
 //! All chosen laws and schemes through all chosen benchmarks, side by side on the machine's cores.
 
-use crate::benchmark::{Benchmark, Case, Laws, Resolution, Target, Tier};
+use crate::benchmark::{Benchmark, Case, Laws, Miss, Resolution, Target, Tier};
+use crate::benchmarks::common_grid_only;
 use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::scheme::{Scheme, schemes};
@@ -29,6 +30,8 @@ pub enum Candidate {
     Law(LawUnderTest),
     /// A scheme, with the contact law of scenes that name none.
     Scheme(&'static Scheme),
+    /// Bodies on grids of their own, which elastic ones get by default.
+    Own,
 }
 
 /// What to run.
@@ -40,6 +43,8 @@ pub struct Suite {
     pub laws: Vec<LawUnderTest>,
     /// The schemes for benchmarks of the step itself, [`Laws::Bulk`].
     pub schemes: Vec<&'static Scheme>,
+    /// Whether bodies on grids of their own are put to all benchmarks that they can be put to.
+    pub own: bool,
     /// How much.
     pub tier: Tier,
     /// Runs at a time; each has one thread.
@@ -144,11 +149,14 @@ impl Suite {
 
     /// The chosen laws or schemes that a benchmark can be put to.
     fn ways(&self, benchmark: &Benchmark) -> Vec<Candidate> {
-        if benchmark.laws == Laws::Bulk {
-            return self.schemes.iter().copied().map(Candidate::Scheme).collect();
-        }
+        let own = (self.own && common_grid_only(benchmark).is_none()).then_some(Candidate::Own);
         let fit = |law: &&LawUnderTest| benchmark.laws.contains(law.law);
-        self.laws.iter().filter(fit).copied().map(Candidate::Law).collect()
+        let laws = self.laws.iter().filter(fit).copied().map(Candidate::Law);
+        let schemes = self.schemes.iter().copied().map(Candidate::Scheme);
+        match benchmark.laws {
+            Laws::Bulk => own.into_iter().chain(schemes).collect(),
+            _ => own.into_iter().chain(laws).collect(),
+        }
     }
 }
 
@@ -158,6 +166,7 @@ impl Candidate {
         match self {
             Candidate::Law(law) => law.word,
             Candidate::Scheme(scheme) => &scheme.word,
+            Candidate::Own => "own grids",
         }
     }
 
@@ -166,6 +175,9 @@ impl Candidate {
         match self {
             Candidate::Law(law) => law.meaning,
             Candidate::Scheme(scheme) => &scheme.meaning,
+            Candidate::Own => {
+                "points of surfaces that lie inside of a partner, of bodies on grids of their own"
+            }
         }
     }
 
@@ -174,19 +186,28 @@ impl Candidate {
         match self {
             Candidate::Law(law) => law.default,
             Candidate::Scheme(scheme) => scheme.default,
+            Candidate::Own => false,
         }
     }
 
     /// Whether targets are asked of it, and not only figures to compare.
     fn is_required(&self) -> bool {
-        self.is_default() || matches!(self, Candidate::Law(LawUnderTest { law: ContactLaw::Glued, .. }))
+        let is_glued = matches!(self, Candidate::Law(LawUnderTest { law: ContactLaw::Glued, .. }));
+        self.is_default() || is_glued || *self == Candidate::Own
     }
 
     fn case(&self, resolution: Resolution, tier: Tier) -> Case {
-        let cells = resolution.cells;
+        let usual = Case {
+            law: laws()[0].word,
+            interior: "grid",
+            scheme: &schemes()[0],
+            cells: resolution.cells,
+            tier,
+        };
         match self {
-            Candidate::Law(law) => Case { law: law.word, scheme: &schemes()[0], cells, tier },
-            Candidate::Scheme(scheme) => Case { law: laws()[0].word, scheme, cells, tier },
+            Candidate::Law(law) => Case { law: law.word, ..usual },
+            Candidate::Scheme(scheme) => Case { scheme, ..usual },
+            Candidate::Own => Case { interior: "reference", ..usual },
         }
     }
 }
@@ -258,11 +279,16 @@ impl SuiteEntry {
         let known = |target: &Target| {
             self.judged(target).is_some_and(|run| {
                 let value = run.result.as_ref().ok().and_then(|outcome| outcome.value(target.metric));
-                value.is_some_and(|value| target.is_known(value, run.resolution.cells))
+                value.is_some_and(|value| target.is_known(value, run.resolution.cells, self.misses(target)))
             })
         };
         let targets = self.benchmark.targets.iter().filter(move |_| required);
         targets.filter(move |target| self.verdict(target) == Verdict::Missed && !known(target))
+    }
+
+    /// Where it is known to miss a target.
+    pub fn misses(&self, target: &Target) -> &'static [Miss] {
+        if self.way == Candidate::Own { target.own_misses } else { target.misses }
     }
 
     /// How the law or scheme did by all targets: missed if one is, open if all are.
@@ -299,7 +325,7 @@ const NOTHING: f64 = 1e-9;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::benchmark::{Allowed, Laws, Miss};
+    use crate::benchmark::{Allowed, Laws};
 
     const TARGETS: &[Target] = &[
         Target::new("error", 0.0, Allowed::Within(0.02), "a test"),
@@ -356,6 +382,7 @@ mod tests {
                 benchmarks: vec![&TEST],
                 laws: laws(),
                 schemes: Vec::new(),
+                own: false,
                 tier: Tier::Quick,
                 threads,
             };
@@ -391,6 +418,7 @@ mod tests {
             benchmarks: vec![demanding],
             laws: laws(),
             schemes: Vec::new(),
+            own: false,
             tier: Tier::Quick,
             threads: 2,
         };
@@ -414,6 +442,7 @@ mod tests {
             benchmarks: vec![bulk, &TEST],
             laws: Vec::new(),
             schemes: schemes().iter().collect(),
+            own: false,
             tier: Tier::Quick,
             threads: 1,
         };

@@ -31,6 +31,7 @@ fn cubic_splines_reach_what_the_benchmarks_of_the_step_ask() {
         benchmarks: BENCHMARKS.iter().filter(|it| BOUNDS.iter().any(|(name, ..)| *name == it.name)).collect(),
         laws: Vec::new(),
         schemes: schemes().iter().filter(|scheme| scheme.word == "cubic-modified-last-rflip").collect(),
+        own: false,
         tier: Tier::Quick,
         threads: std::thread::available_parallelism().map_or(1, usize::from),
     };

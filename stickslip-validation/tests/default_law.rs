@@ -17,6 +17,7 @@ fn the_default_law_and_scheme_and_glue_reach_what_they_are_known_to_reach() {
         benchmarks: BENCHMARKS.iter().collect(),
         laws: held,
         schemes: schemes().iter().filter(|scheme| scheme.default).collect(),
+        own: false,
         tier: Tier::Quick,
         threads,
     };

@@ -27,6 +27,7 @@ fn errors(name: &str, tier: Tier, basis: &str) -> Vec<f64> {
         benchmarks: BENCHMARKS.iter().filter(|benchmark| benchmark.name == name).collect(),
         laws: Vec::new(),
         schemes: schemes().iter().filter(|scheme| scheme.word == word).collect(),
+        own: false,
         tier,
         threads: 1,
     };

@@ -18,6 +18,7 @@ fn functions_without_kinks_mend_slow_sliding() {
         benchmarks: BENCHMARKS.iter().filter(|benchmark| benchmark.name == "B33").collect(),
         laws: Vec::new(),
         schemes: schemes().iter().filter(|scheme| scheme.word == "spline-modified-last-rflip").collect(),
+        own: false,
         tier: Tier::Quick,
         threads: std::thread::available_parallelism().map_or(1, usize::from),
     };

@@ -21,7 +21,7 @@ use stickslip_validation::{BENCHMARKS, Case, Outcome, Tier, laws, schemes};
 fn measured(name: &str, word: &str, cells: f64) -> Outcome {
     let benchmark = BENCHMARKS.iter().find(|benchmark| benchmark.name == name).expect("its name");
     let scheme = schemes().iter().find(|scheme| scheme.word == word).expect("its word");
-    let case = Case { law: laws()[0].word, scheme, cells, tier: Tier::Quick };
+    let case = Case { law: laws()[0].word, interior: "grid", scheme, cells, tier: Tier::Quick };
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let outcome = alone.install(|| (benchmark.run)(&case));
     outcome.unwrap_or_else(|failure| panic!("{name} by {word}: {failure}"))

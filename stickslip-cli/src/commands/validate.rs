@@ -32,6 +32,10 @@ pub struct Arguments {
     #[arg(long = "scheme", value_name = "SCHEME", value_parser = scheme_words())]
     schemes: Vec<&'static Scheme>,
 
+    /// Run bodies on grids of their own; without this, `--law` and `--scheme` they run beside the laws and schemes.
+    #[arg(long)]
+    own: bool,
+
     /// Every resolution and every variant, which takes long; without this, about four and a half minutes on two cores.
     #[arg(long)]
     all: bool,
@@ -72,19 +76,19 @@ fn unwritable(folder: &Path, error: &std::io::Error) -> Failure {
 impl Arguments {
     /// Those that are named; without a name all, and none where only schemes are named.
     fn chosen_laws(&self) -> Vec<LawUnderTest> {
-        match (&self.laws[..], self.only(&self.schemes)) {
-            ([], true) => Vec::new(),
-            ([], false) => laws(),
-            (named, _) => named.to_vec(),
+        match &self.laws[..] {
+            [] if self.own || self.only(&self.schemes) => Vec::new(),
+            [] => laws(),
+            named => named.to_vec(),
         }
     }
 
     /// Those that are named; without a name the default one, with `--all` all, and none where only laws are named.
     fn chosen_schemes(&self) -> Vec<&'static Scheme> {
-        match (&self.schemes[..], self.only(&self.laws)) {
-            ([], true) => Vec::new(),
-            ([], false) => schemes().iter().filter(|scheme| self.all || scheme.default).collect(),
-            (named, _) => named.to_vec(),
+        match &self.schemes[..] {
+            [] if self.own || self.only(&self.laws) => Vec::new(),
+            [] => schemes().iter().filter(|scheme| self.all || scheme.default).collect(),
+            named => named.to_vec(),
         }
     }
 
@@ -101,6 +105,7 @@ impl Arguments {
             benchmarks: BENCHMARKS.iter().filter(chosen).collect(),
             laws: self.chosen_laws(),
             schemes: self.chosen_schemes(),
+            own: self.own || (self.laws.is_empty() && self.schemes.is_empty()),
             tier: if self.all { Tier::Full } else { Tier::Quick },
             threads: match self.threads {
                 Some(threads) => threads.into(),

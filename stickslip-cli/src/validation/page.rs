@@ -55,7 +55,7 @@ impl Chapter {
         let mut laws = Chapter { kind: "law", ways: Vec::new() };
         let mut schemes = Chapter { kind: "scheme", ways: Vec::new() };
         for entry in &report.entries {
-            let chapter = if matches!(entry.way, Candidate::Law(_)) { &mut laws } else { &mut schemes };
+            let chapter = if entry.benchmark.laws == Laws::Bulk { &mut schemes } else { &mut laws };
             if !chapter.ways.contains(&entry.way) {
                 chapter.ways.push(entry.way);
             }
@@ -247,7 +247,8 @@ fn targets(benchmark: &Benchmark) -> Table {
 /// Where the law or scheme of scenes that name none is known to miss a target, and how far it may be off there.
 fn misses(benchmark: &Benchmark, target: &Target) -> String {
     let miss = |miss: &Miss| format!("{} at {} = {}", miss.off, benchmark.measure, miss.cells);
-    target.misses.iter().map(miss).collect::<Vec<_>>().join(", ")
+    let own = |it: &Miss| format!("{} on own grids", miss(it));
+    target.misses.iter().map(miss).chain(target.own_misses.iter().map(own)).collect::<Vec<_>>().join(", ")
 }
 
 /// What every run records.

@@ -70,7 +70,7 @@ fn write_heading(entry: &SuiteEntry, text: &mut String) {
 /// Width of the column of laws or schemes.
 fn column(entry: &SuiteEntry) -> usize {
     match entry.way {
-        Candidate::Law(_) => 10,
+        Candidate::Law(_) | Candidate::Own => 10,
         Candidate::Scheme(_) => schemes().iter().map(|scheme| scheme.word.len()).fold(10, usize::max),
     }
 }

@@ -46,13 +46,13 @@ const RAMP: f64 = 20.0;
 const REST: f64 = 10.0;
 
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
-    let h = HALF_WIDTH / case.cells;
+    let (h, interior) = (HALF_WIDTH / case.cells, case.interior);
     let thick = 2.0 * h;
     let mut trial = Trial::start(
         "press",
         format!(
             r#"title = "Cylinder on a plane"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = {}
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

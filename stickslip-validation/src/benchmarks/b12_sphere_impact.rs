@@ -72,7 +72,7 @@ const CONTACT_RADIUS: f64 = 0.15;
 const WINDOWS: f64 = 100.0;
 
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
-    let h = CONTACT_RADIUS / case.cells;
+    let (h, interior) = (CONTACT_RADIUS / case.cells, case.interior);
     let modulus = 1.0 / (1.0 - 0.3 * 0.3);
     let mass = 4.0 / 3.0 * std::f64::consts::PI;
     let speed = (DENT.powf(2.5) * 16.0 * modulus / (15.0 * mass)).sqrt();
@@ -84,7 +84,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
             r#"title = "Sphere bouncing off a plane"
 [space]
 dimension = "3d"
-interior = "grid"
+interior = "{interior}"
 cell = {h}
 domain = {{ min = [0, 0, {}], max = [{reach}, {reach}, {}], x_min = "symmetry", y_min = "symmetry" }}
 [time]

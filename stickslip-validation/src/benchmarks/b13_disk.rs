@@ -78,12 +78,12 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 /// The contact point's tangential velocity after the impact for one before it, both over the normal speed, and the mean
 /// height of the centre over the impulse of friction.
 fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let mut trial = Trial::start(
         format!("slip_{before:.1}"),
         format!(
             r#"title = "Oblique impact of a disk"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 16
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -95,7 +95,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 
 /// The contact point's tangential velocity after the impact for one before it, both over the normal speed.
 fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
-    let h = CONTACT_RADIUS / case.cells;
+    let (h, interior) = (CONTACT_RADIUS / case.cells, case.interior);
     let nu = IMPACT.poisson_ratio;
     let (modulus, mass) = (1.0 / (1.0 - nu * nu), 4.0 / 3.0 * std::f64::consts::PI);
     let speed = (DENT.powf(2.5) * 16.0 * modulus / (15.0 * mass)).sqrt();
@@ -107,7 +107,7 @@ fn strike(case: &Case, before: f64, outcome: &mut Outcome) -> Result<f64, CaseFa
             r#"title = "Oblique impact of a sphere"
 [space]
 dimension = "3d"
-interior = "grid"
+interior = "{interior}"
 cell = {h}
 domain = {{ min = [{}, 0, {}], max = [{}, {side}, {}], y_min = "symmetry" }}
 [time]

@@ -60,7 +60,7 @@ const BLOCKS: u32 = 10;
 const GRAVITY: f64 = 5e-4;
 
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let transits = if case.tier == Tier::Full { 1000.0 } else { 25.0 };
     let end = transits * f64::from(BLOCKS);
     let block = |i: u32| {
@@ -75,7 +75,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
         format!(
             r#"title = "Stack of ten blocks"
 gravity = [0, -{GRAVITY}]
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = {end}
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 {}[[bodies]]

@@ -111,7 +111,8 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 /// Acceleration and way under the full load over those without friction; the floor is turned against the grid by `turn`
 /// [rad].
 fn slide(case: &Case, turn: f64, friction: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
+    let damps = if case.is_own() { "" } else { ", pic_share = 1" };
     let (along, away) = ([turn.cos(), -turn.sin()], [turn.sin(), turn.cos()]);
     let (press, free) = (G * ANGLE.cos(), G * ANGLE.sin());
     // Speed of the floor: its acceleration grows from nothing to `free` as (1 - cos)/2.
@@ -123,8 +124,8 @@ fn slide(case: &Case, turn: f64, friction: f64, outcome: &mut Outcome) -> Result
         format!(
             r#"title = "Block on an incline"
 gravity = [{}, {}]
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
-time = {{ end = {END}, pic_share = 1 }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
+time = {{ end = {END}{damps} }}
 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
 [[bodies]]
 name = "floor"

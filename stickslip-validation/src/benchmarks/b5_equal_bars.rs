@@ -80,13 +80,13 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 }
 
 fn impact(case: &Case, i: usize, speed: f64, outcome: &mut Outcome) -> Result<(), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let height = 4.0 * h;
     let mut trial = Trial::start(
         format!("speed_{speed}"),
         format!(
             r#"title = "Equal bars in impact"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 3
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
 [[bodies]]

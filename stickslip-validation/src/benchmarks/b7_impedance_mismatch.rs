@@ -61,7 +61,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 
 /// Error of the transmitted stress and difference of tractions, over the exact stress.
 fn strike(case: &Case, modulus: f64, density: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let height = 4.0 * h;
     let wave = (modulus / density).sqrt();
     // The pressure of the first bar lasts until t = 2, and in the second the front comes to the end at 2.
@@ -70,7 +70,7 @@ fn strike(case: &Case, modulus: f64, density: f64, outcome: &mut Outcome) -> Res
         format!("modulus_{modulus}_density_{density}"),
         format!(
             r#"title = "Impedance mismatch"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = {end}
 materials.first = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0 }} }}
 materials.second = {{ density = {density}, neo_hookean = {{ young_modulus = {modulus}, poisson_ratio = 0 }} }}

@@ -58,12 +58,12 @@ of the energy at 1/20, where the patch is 4.5 cells wide at most, 3.1 % at 1/40,
 const SPEED: f64 = 0.1 * std::f64::consts::SQRT_2;
 
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let mut trial = Trial::start(
         "disks",
         format!(
             r#"title = "Two elastic disks"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 3
 materials.rubber = {{ density = 1000, hypoelastic = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -69,14 +69,14 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 /// The block's acceleration along the bed, which is turned through the grid by `turn` [m/s^2], and how deep it sinks
 /// [cells].
 fn push(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let (sin, cos) = turn.sin_cos();
     let mut trial = Trial::start(
         if turn == 0.0 { "aligned" } else { "rotated" },
         format!(
             r#"title = "Block with sharp corners, pressed and pushed"
 gravity = [{}, {}]
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 0.6
 materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e6, poisson_ratio = 0.3 }} }}
 [[bodies]]

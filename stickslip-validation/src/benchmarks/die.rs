@@ -84,7 +84,8 @@ fn stress() -> [f64; 2] {
 }
 
 fn press(case: &Case, i: usize, turn: f64, outcome: &mut Outcome) -> Result<(), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
+    let basis = if case.is_own() { "" } else { ", basis = \"gimp\"" };
     let thick = 3.0 * h;
     let (sin, cos) = turn.sin_cos();
     let speed = format!("(0.5 / {RAMP}) * (1 - cos(2 * pi * min(t / {RAMP}, 1)))");
@@ -106,7 +107,7 @@ fn press(case: &Case, i: usize, turn: f64, outcome: &mut Outcome) -> Result<(), 
         if turn == 0.0 { "aligned" } else { "rotated" },
         format!(
             r#"title = "Block pressed to half its height in a die"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h}, basis = "gimp" }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h}{basis} }}
 time.end = {END}
 materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 {bodies}{}"#,

@@ -94,7 +94,7 @@ fn collide(
     direction: f64,
     outcome: &mut Outcome,
 ) -> Result<(f64, f64), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let (sin, cos) = direction.sin_cos();
     let [x, y] = offset.map(|offset| offset * h);
     let apart = 2.0 + 1.0 / 3.0;
@@ -102,7 +102,7 @@ fn collide(
         format!("offset_{}_{}_direction_{:.2}", offset[0], offset[1], direction.to_degrees()),
         format!(
             r#"title = "Registration"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 20
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -53,14 +53,14 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 /// Impulse along the face over impulse across it; the face is turned through the grid by `turn` [rad]. Units of block
 /// length = rho = E = 1.
 fn strike(case: &Case, turn: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let (sin, cos) = turn.sin_cos();
     let (along, down) = (0.05, 0.005);
     let mut trial = Trial::start(
         if turn == 0.0 { "aligned" } else { "rotated" },
         format!(
             r#"title = "Friction ratio"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 4
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]

@@ -55,12 +55,12 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
 
 /// Restitution, and the largest mean force over a tenth of R/c.
 fn drop(case: &Case, name: &str, motion: &str, outcome: &mut Outcome) -> Result<(f64, f64), CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
     let mut trial = Trial::start(
         name,
         format!(
             r#"title = "Rigid floor as the limit of a stiff one"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h} }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h} }}
 time.end = 14
 materials.elastic = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 materials.stiff = {{ density = 1000, neo_hookean = {{ young_modulus = 1000, poisson_ratio = 0.3 }} }}

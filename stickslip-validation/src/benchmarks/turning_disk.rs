@@ -85,7 +85,8 @@ const RAMP: f64 = 30.0;
 const BEGIN: f64 = 35.0;
 
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
-    let h = 1.0 / case.cells;
+    let (h, interior) = (1.0 / case.cells, case.interior);
+    let basis = if case.is_own() { "" } else { ", basis = \"gimp\"" };
     let thick = 3.0 * h;
     let end = BEGIN + 2.0 * std::f64::consts::PI / SPIN;
     let speed = format!("({SQUEEZE} / {RAMP}) * (1 - cos(2 * pi * min(t / {RAMP}, 1)))");
@@ -93,7 +94,7 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
         "turning",
         format!(
             r#"title = "Squeezed disk that turns between frictionless walls"
-space = {{ dimension = "plane-strain", interior = "grid", cell = {h}, basis = "gimp" }}
+space = {{ dimension = "plane-strain", interior = "{interior}", cell = {h}{basis} }}
 time.end = {end}
 materials.rubber = {{ density = 1, neo_hookean = {{ young_modulus = 1, poisson_ratio = 0.3 }} }}
 [[bodies]]
