@@ -64,7 +64,7 @@ pub fn record_seeds() -> Vec<Vec<u8>> {
 }
 
 /// Tables of a run.
-const TABLES: [&str; 16] = [
+const TABLES: [&str; 17] = [
     "bodies.csv",
     "energy.csv",
     "contacts.csv",
@@ -81,6 +81,7 @@ const TABLES: [&str; 16] = [
     "group_contacts.csv",
     "removed.csv",
     "fabric.csv",
+    "tractions.csv",
 ];
 
 /// Reads a table: the first byte says which.
@@ -113,7 +114,8 @@ pub fn tables(bytes: &[u8]) {
             12 => drop(results.groups_table()),
             13 => drop(results.group_contacts_table()),
             14 => drop(results.removed_table()),
-            _ => drop(results.fabric_table()),
+            15 => drop(results.fabric_table()),
+            _ => drop(results.tractions_table()),
         }
         if is_drawn(bytes) {
             let table = [

@@ -58,6 +58,7 @@ grid = 0.02
 samples = 0.005
 checkpoints = 0.01
 reactions = ["floor"]
+tractions = {}
 [outputs.fringes]
 interval = 0.01
 samples = 2

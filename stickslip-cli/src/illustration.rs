@@ -363,6 +363,7 @@ pub fn illustrate(folder: &Path) -> Result<String, Failure> {
         "groups.csv",
         "group_contacts.csv",
         "fabric.csv",
+        "tractions.csv",
         "probes.csv",
         "arrivals.csv",
         "fronts.csv",

@@ -9,10 +9,10 @@
 use crate::column::ColumnDescription;
 use crate::contact::ContactSums;
 use crate::door::{
-    BodyState, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState, NoColumn,
-    NotTakenUp, ParticleSnapshot, ParticleView, RankShare, RelaxationState, RemovedParticles, RestoreError,
-    SavedBody, SavedColumn, SavedShare, SavedState, Simulation, StepError, StepLimit, TracedParticle, View,
-    WallState, WriteError, WrittenValues,
+    BodyState, ColumnRef, ContactPatch, ContactPoint, ContactSum, GridSnapshot, JointState, Ledger,
+    LoadState, NoColumn, NotTakenUp, ParticleSnapshot, ParticleView, RankShare, RelaxationState,
+    RemovedParticles, RestoreError, SavedBody, SavedColumn, SavedShare, SavedState, Simulation, StepError,
+    StepLimit, TracedParticle, View, WallState, WriteError, WrittenValues,
 };
 use crate::lanes::Processor;
 use crate::particles::by_number;
@@ -609,6 +609,10 @@ impl View for Leader {
 
     fn patches(&self) -> Vec<ContactPatch> {
         self.tell(&Call::Patches).patches()
+    }
+
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        self.0.own.contact_points()
     }
 
     fn removed(&self) -> Vec<RemovedParticles> {

@@ -10,9 +10,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use stickslip::column::ColumnDescription;
 use stickslip::door::{
-    BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactSum, GridSnapshot, JointState, Ledger, LoadState,
-    NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles, RestoreError, SavedColumn,
-    SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState, WriteError, WrittenValues,
+    BodyState, ColumnPlace, ColumnRef, ContactPatch, ContactPoint, ContactSum, GridSnapshot, JointState,
+    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RelaxationState, RemovedParticles,
+    RestoreError, SavedColumn, SavedState, Simulation, StepError, StepLimit, TracedParticle, View, WallState,
+    WriteError, WrittenValues,
 };
 use stickslip::rigid::Pose;
 use stickslip::scene::StartVelocities;
@@ -201,6 +202,10 @@ impl View for Handle {
 
     fn patches(&self) -> Vec<ContactPatch> {
         self.0.ask(|simulation| simulation.patches())
+    }
+
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        self.0.ask(|simulation| simulation.contact_points())
     }
 
     fn snapshot(&self) -> ParticleSnapshot {

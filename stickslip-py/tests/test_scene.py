@@ -192,7 +192,7 @@ def test_every_table_of_the_language_has_its_method(tmp_path):
     wheel = ss.disk((-0.1, -0.1), "2 cm")
     scene.body("wheel", material="rubber", shape=wheel, rigid=dict(free={})).joint("wheel", hinge=dict(point=(-0.1, -0.1)))
     scene.time(end="1 ms", courant=0.3).damping(viscous=1)
-    scene.outputs(tables="0.1 ms").probe("p", at=(0.03, 0)).section("s", point=(0, 0), normal=(1, 0)).group("g", bodies=["w*"]).arrival("speed", "1 mm/s", probes=["p"])
+    scene.outputs(tables="0.1 ms", tractions=dict(interval="0.2 ms")).probe("p", at=(0.03, 0)).section("s", point=(0, 0), normal=(1, 0)).group("g", bodies=["w*"]).arrival("speed", "1 mm/s", probes=["p"])
     scene.front("f", quantity="speed", threshold="1 mm/s", from_=(0, 0), direction=(1, 0), bodies=["disk"])
     scene.reference("disk", "x", "0 m/s * t", "at rest")
     found = record(scene)
@@ -201,7 +201,7 @@ def test_every_table_of_the_language_has_its_method(tmp_path):
     assert [len(found[key]) for key in ("bodies", "joints", "contact", "references")] == [4, 1, 2, 1]
     measured = found["outputs"]["measurements"]
     assert [len(measured[key]) for key in ("probes", "arrivals", "fronts", "sections", "groups")] == [1, 1, 1, 1, 1]
-    assert measured["fronts"][0]["from"] == [0.0, 0.0, 0.0]
+    assert measured["fronts"][0]["from"] == [0.0, 0.0, 0.0] and measured["tractions"]["interval"] == 2e-4
     assert found["time"]["courant"] == 0.3 and found["damping"]["viscous"] == 1.0
     assert found["domain"]["faces"][0] == ["symmetry", "open"]
     space = ss.Scene("3d", 0.1).material("rubber", **scene.document["materials"]["rubber"]).time(end=1)

@@ -15,7 +15,7 @@ use stickslip::image::Image;
 use stickslip::march::MarchError;
 use stickslip::observe::{FolderError, Results, Status};
 use stickslip::run::{RunError, RunOptions, Summary, run};
-use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity};
+use stickslip::scene::{Fringes, Light, Overlay, Polariscope, PolariscopeField, Sensitivity, Tractions};
 
 fn options(out: &Path) -> RunOptions {
     RunOptions { threads: 2, ..RunOptions::new(out) }
@@ -87,7 +87,9 @@ fn a_run_records_its_start_every_interval_and_its_exact_end() {
 #[test]
 fn the_tables_have_the_columns_that_the_manual_lists() {
     let out = tempfile::tempdir().unwrap();
-    run_to(out.path(), &mut Ballistic::new(0.1)).unwrap();
+    let mut scene = scene();
+    scene.outputs.measurements.tractions = Some(Tractions::default());
+    run(&scene, &mut Ballistic::new(0.1), &options(out.path()), &mut |_| {}).unwrap();
     let header =
         |name: &str| fs::read_to_string(out.path().join(name)).unwrap().lines().next().unwrap().to_string();
     assert_eq!(header("bodies.csv"), "time,body,mass,x,y,z,vx,vy,vz,wx,wy,wz,kinetic,strain");
@@ -99,6 +101,7 @@ fn the_tables_have_the_columns_that_the_manual_lists() {
         header("contacts.csv"),
         "time,body_a,body_b,fx,fy,fz,normal,tangential,nodes,x,y,z,area,gap,slip,friction"
     );
+    assert_eq!(header("tractions.csv"), "time,body,partner,x,y,z,x0,y0,z0,nx,ny,nz,area,pressure,tx,ty,tz");
 }
 
 #[test]

@@ -16,7 +16,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-use stickslip::observe::{Checkpoint, FolderError, Manifest, OutputError, Patience, Status, Waiting, Writer};
+use stickslip::observe::{
+    Checkpoint, FolderError, Manifest, OutputError, Patience, Results, Status, Waiting, Writer,
+};
 use stickslip::run::{Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with};
 use stickslip::scene::{Scene, parse};
 
@@ -347,6 +349,49 @@ surface_format = "glb"
 checkpoints = 0.02
 "#;
 
+/// A disk on a grid of its own rolls on a block on one, which lies on a closed face and is squeezed by rigid walls.
+const PRESSED: &str = r#"
+gravity = [0, -9.81]
+[space]
+dimension = "plane-strain"
+interior = "reference"
+cell = 0.1
+domain = { min = [-2, 0], max = [2, 3], y_min = "fixed" }
+[time]
+end = 1
+[materials.rubber]
+density = 1000
+neo_hookean = { young_modulus = 1e5, poisson_ratio = 0.3 }
+[[bodies]]
+name = "low"
+material = "rubber"
+shape.box = { min = [-0.5, 0.01], max = [0.5, 0.41] }
+[[bodies]]
+name = "high"
+material = "rubber"
+shape.ball = { center = [0.1, 0.72], radius = 0.3 }
+velocity = [0, -1]
+spin = 6
+[[bodies]]
+name = "wall"
+material = "rubber"
+shape.half_space = { point = [-0.51, 0], normal = [1, 0] }
+rigid.velocity = [0.05, 0]
+[[bodies]]
+name = "stop"
+material = "rubber"
+shape.half_space = { point = [0.51, 0], normal = [-1, 0] }
+rigid = {}
+[[contact]]
+friction = 0.3
+[outputs]
+tables = 0.01
+particles = 0.2
+surfaces = 0.2
+checkpoints = 0.1
+tractions = { interval = 0.017, bodies = ["low", "high"] }
+"#;
+
 /// The box from the origin to this corner.
 fn box_of_triangles(x: f64) -> String {
     let corner = |i: usize| {
@@ -387,8 +432,16 @@ fn start_and_stop(scene: &Scene, out: &Path, steps: u64) -> Summary {
 #[test]
 fn a_stopped_run_goes_on_bit_for_bit() {
     let single = PLANE.replace("double", "single");
-    let scenes =
-        [(PLANE, 1), (PLANE, 97), (&single, 40), (SPACE, 30), (LOSING, 3), (LOADED, 50), (PERIODIC, 110)];
+    let scenes = [
+        (PLANE, 1),
+        (PLANE, 97),
+        (&single, 40),
+        (SPACE, 30),
+        (LOSING, 3),
+        (LOADED, 50),
+        (PERIODIC, 110),
+        (PRESSED, 80),
+    ];
     for (text, first) in scenes {
         let scene = scene(text);
         let folder = tempfile::tempdir().unwrap();
@@ -409,18 +462,21 @@ fn a_stopped_run_goes_on_bit_for_bit() {
         );
         assert_eq!(found.contacts, expected.contacts);
         assert!(!Manifest::read(&parts).unwrap().resumed.is_empty());
+        let touches = text == PRESSED;
+        let last = Results::open(&whole).unwrap().tractions_table().unwrap().pop();
+        assert_eq!(last.map(|row| row.time), touches.then_some(expected.performance.time));
         // Once more from its end: there is nothing left to do, and nothing changes.
         go_on(&scene, &parts).unwrap();
         assert_same_run(&whole, &parts);
     }
 }
 
-/// With surfaces, meshes, a law that breaks, and plane stress.
+/// With surfaces, meshes, a law that breaks, plane stress, and points of contact.
 #[test]
 fn a_stopped_run_goes_on_bit_for_bit_with_other_numbers_of_threads() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("box.obj"), box_of_triangles(1.0)).unwrap();
-    for (name, text, first) in [("torn", TORN, 30), ("meshed", MESHED, 55)] {
+    for (name, text, first) in [("torn", TORN, 30), ("meshed", MESHED, 55), ("pressed", PRESSED, 60)] {
         let scene = scene_in(folder.path(), text);
         let [whole, parts] = ["whole", "parts"].map(|part| folder.path().join(name).join(part));
         let on = |threads: usize, act: &(dyn Fn() -> Summary + Sync)| {

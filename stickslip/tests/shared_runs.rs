@@ -455,6 +455,7 @@ particles = 0.05
 surfaces = 0.1
 samples = 0.01
 checkpoints = 0.02
+tractions.interval = 0.007
 "#;
 
 /// The unit cube.

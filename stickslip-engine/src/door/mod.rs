@@ -67,6 +67,11 @@ pub trait View {
     }
     /// The widest contact of each pair of bodies since the start, ordered by pair.
     fn patches(&self) -> Vec<ContactPatch>;
+    /// The points of surfaces of bodies on grids of their own that passed a force in the last step, by body, point and
+    /// partner; none before the first step.
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        Vec::new()
+    }
     /// What left the domain since the start with particles that were taken out, in the order of the bodies; nothing of
     /// simulations that take none out.
     fn removed(&self) -> Vec<RemovedParticles> {
@@ -586,6 +591,49 @@ pub struct ContactPatch {
     pub half_width: f64,
     /// Impulses between the two since the start, the sum of their magnitudes over nodes and steps [N s].
     pub impulse: f64,
+}
+
+/// What acts on a body at a point of its surface that touches:
+///
+/// ```text
+/// t = -p n + tau          traction per undeformed area
+/// f = sum_s A_s t_s       force of a partner, with the opposite of what acts at the partner's points
+/// ```
+///
+/// Where both bodies have points, each stands for half of its area, as the others carry the other half: the pressure is
+/// that between the bodies, on either side.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactPoint {
+    /// Index of the body.
+    pub body: usize,
+    /// What it touches.
+    pub partner: Touched,
+    /// Where it is as the forces of the step act [m].
+    pub position: [f64; 3],
+    /// Where it was undeformed [m].
+    pub undeformed: [f64; 3],
+    /// Unit normal n, out of the body: against that of the partner's surface there [-].
+    pub normal: [f64; 3],
+    /// Undeformed area A for which it stands [m^2], in the plane length per depth [m].
+    pub area: f64,
+    /// Pressure p, force over undeformed area, at least 0 [Pa].
+    pub pressure: f64,
+    /// Shear traction tau on the body [Pa].
+    pub shear: [f64; 3],
+}
+
+/// What a point of a surface touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Touched {
+    /// The body with this index.
+    Body(usize),
+    /// A face of the domain.
+    Face {
+        /// Axis across it.
+        axis: usize,
+        /// Whether it is the upper one.
+        upper: bool,
+    },
 }
 
 /// A particle now, as [`Simulation::visit`] shows it.

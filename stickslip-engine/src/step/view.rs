@@ -11,8 +11,8 @@ use crate::clock::{Fastest, fastest_motion};
 use crate::column::{ColumnDescription, Kind};
 use crate::contact::Span;
 use crate::door::{
-    BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactSum, GridSnapshot, JointState,
-    Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RankShare, RelaxationState,
+    BodyState, ColumnPlace, ColumnRef, ColumnSource, ContactPatch, ContactPoint, ContactSum, GridSnapshot,
+    JointState, Ledger, LoadState, NoColumn, ParticleSnapshot, ParticleView, RankShare, RelaxationState,
     RemovedParticles, SnapshotColumn, StepLimit, TracedParticle, View, WallState, WrittenValues,
 };
 use crate::grid::{node_at, nodes_per_block};
@@ -378,6 +378,10 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
 
     fn patches(&self) -> Vec<ContactPatch> {
         self.state.contact_sums.patches()
+    }
+
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        self.pressed_points()
     }
 
     fn removed(&self) -> Vec<RemovedParticles> {

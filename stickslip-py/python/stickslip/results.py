@@ -99,9 +99,9 @@ class Results:
     """What a run left in a folder, finished or not.
 
     `results.bodies` is bodies.csv, and so for every table there: `energy`, `contacts`, `loads`, `joints`, `sections`,
-    `removed`, `groups`, `group_contacts`, `fabric`, `probes`, `arrivals`, `fronts`, `front_speeds`, `fringes`.
-    `results.bodies.dtype.names` are the columns; what each is, with its unit, stands in the book, book/07-outputs.md of
-    the repository. Tables and snapshots are read when they are asked for.
+    `removed`, `groups`, `group_contacts`, `fabric`, `tractions`, `probes`, `arrivals`, `fronts`, `front_speeds`,
+    `fringes`. `results.bodies.dtype.names` are the columns; what each is, with its unit, stands in the book,
+    book/07-outputs.md of the repository. Tables and snapshots are read when they are asked for.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:

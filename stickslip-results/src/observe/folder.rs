@@ -7,7 +7,7 @@ use super::waiting::Waiting;
 use super::{
     ARRIVALS, BODIES, CHART, CHECKPOINTS, CONTACTS, ENERGY, FABRIC, FRINGES, FRINGES_ANIMATION,
     FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS, LOADS, PARTICLES, PICTURE,
-    PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
+    PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES, TRACTIONS,
 };
 use miette::Diagnostic;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that a run may leave in its folder.
-const FILES: [&str; 22] = [
+const FILES: [&str; 23] = [
     BODIES,
     ENERGY,
     CONTACTS,
@@ -30,6 +30,7 @@ const FILES: [&str; 22] = [
     GROUPS,
     GROUP_CONTACTS,
     FABRIC,
+    TRACTIONS,
     PROBES,
     ARRIVALS,
     FRONTS,

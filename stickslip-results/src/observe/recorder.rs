@@ -20,9 +20,10 @@ use super::reactions::ReactionsObserver;
 use super::removed::RemovedObserver;
 use super::sections::SectionsObserver;
 use super::surfaces::SurfacesObserver;
+use super::tractions::TractionsObserver;
 use super::{
     ARRIVALS, BODIES, CONTACTS, Doubt, ENERGY, FABRIC, FRINGES, FRONTS, GRID, GROUP_CONTACTS, GROUPS, JOINTS,
-    LOADS, Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES,
+    LOADS, Observer, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, SURFACES, TRACTIONS,
 };
 use crate::door::View;
 use crate::scene::{Leaving, Scene};
@@ -30,8 +31,8 @@ use crate::scene::{Leaving, Scene};
 /// Tables that keep their own length over a checkpoint: the file, and the part of the memory where they do.
 pub(super) fn tables() -> impl Iterator<Item = (&'static str, String)> {
     let under_their_name = [
-        BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, FABRIC, PROBES,
-        ARRIVALS, FRONTS,
+        BODIES, ENERGY, CONTACTS, LOADS, JOINTS, REMOVED, SECTIONS, REACTIONS, GROUPS, FABRIC, TRACTIONS,
+        PROBES, ARRIVALS, FRONTS,
     ];
     let of_groups = (GROUP_CONTACTS, format!("{GROUPS}/{PAIRS}"));
     under_their_name.map(|name| (name, name.to_string())).into_iter().chain([of_groups])
@@ -82,6 +83,9 @@ impl<'a> Recorder<'a> {
         }
         if !wanted.fabric.is_empty() {
             recorder.schedule(FABRIC, FabricObserver::create(scene, folder)?);
+        }
+        if let Some(asked) = &wanted.tractions {
+            recorder.schedule(TRACTIONS, TractionsObserver::create((scene, asked), folder)?);
         }
         if !wanted.probes.is_empty() {
             recorder.schedule(PROBES, ProbesObserver::create(scene, folder)?);

@@ -20,9 +20,10 @@ use super::recorded::RecordedScene;
 use super::removed::RemovedRow;
 use super::sections::SectionRow;
 use super::table::{TableRow, read_rows};
+use super::tractions::TractionRow;
 use super::{
     ARRIVALS, BODIES, CONTACTS, ENERGY, FABRIC, FRINGES, FRINGES_TABLE, FRONT_SPEEDS, FRONTS, GROUP_CONTACTS,
-    GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS,
+    GROUPS, JOINTS, LOADS, PARTICLES, PROBES, REACTIONS, REMOVED, SECTIONS, TRACTIONS,
 };
 use crate::column::every;
 use crate::door::ParticleSnapshot;
@@ -158,6 +159,14 @@ impl Results {
     /// The file is damaged.
     pub fn fabric_table(&self) -> Result<Vec<FabricRow>, ReadError> {
         self.measured(FABRIC)
+    }
+
+    /// `tractions.csv`: at each time a row for each point of contact that the scene asks for.
+    ///
+    /// # Errors
+    /// The file is damaged.
+    pub fn tractions_table(&self) -> Result<Vec<TractionRow>, ReadError> {
+        self.measured(TRACTIONS)
     }
 
     /// `joints.csv`: at each time but the first a row for each joint; none if the scene has none.

@@ -102,6 +102,7 @@ impl Verified {
             results.groups_table().err(),
             results.group_contacts_table().err(),
             results.fabric_table().err(),
+            results.tractions_table().err(),
             results.removed_table().err(),
             results.probes_table().err(),
             results.arrivals_table().err(),

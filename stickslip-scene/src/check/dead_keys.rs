@@ -7,6 +7,7 @@ use crate::scene::{
     Action, BasisKind, Body, Changes, ContactLaw, ContactRule, Damping, Expression, HealthCheck, Interior,
     JointKind, Load, Motor, Normal, Scene,
 };
+use std::collections::HashSet;
 
 /// What a scene says and nothing comes of, a line for each kind.
 pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
@@ -20,6 +21,7 @@ pub(super) fn warnings(scene: &Scene) -> impl Iterator<Item = Warning> {
         .chain(overruled_drift(scene))
         .chain(overruled_motor(scene))
         .chain(late_tables(scene))
+        .chain(tractions_of_nobody(scene))
 }
 
 /// Of rules between rigid bodies alone, keys that are about nodes: these bodies touch without a grid.
@@ -196,6 +198,23 @@ fn late_tables(scene: &Scene) -> Option<Warning> {
     Some(Warning::about(change.key.clone(), why))
 }
 
+/// Points of contact are those of bodies on grids of their own.
+fn tractions_of_nobody(scene: &Scene) -> Option<Warning> {
+    let asked = scene.outputs.measurements.tractions.as_ref()?;
+    let on_grid = (0..scene.bodies.len()).filter(|&body| scene.interior(body) == Interior::Grid);
+    let Some(names) = &asked.bodies else {
+        let why = "does not act: it is that of bodies with interior = \"reference\", and the scene has none";
+        let none = on_grid.count() == scene.bodies.len();
+        return none.then(|| Warning::about("outputs.tractions", why));
+    };
+    let names: HashSet<&String> = names.iter().collect();
+    let mut dead = on_grid.map(|body| &scene.bodies[body].name).filter(|name| names.contains(name));
+    let first = dead.next()?;
+    let named = and_more(&format!("`{first}`"), dead.count());
+    let why = format!("does not act on {named}: contact on the common grid has no points");
+    Some(Warning::about("outputs.tractions.bodies", why))
+}
+
 /// The first key of a motor beside its speed that pushes.
 pub(super) fn first_key(motor: &Motor, push: &'static str) -> Option<&'static str> {
     let pushes = motor.push != Expression::Constant(0.0);
@@ -243,6 +262,10 @@ mod tests {
         assert_eq!(found, [why]);
         assert_eq!(told(time, "interior = 'grid'"), [""; 0]);
         assert_eq!(told("time = { end = 1, transfer = 'rflip' }", ""), [""; 0]);
+        let tractions = "time.end = 1\noutputs.tractions.bodies = ['*']";
+        let why = "outputs.tractions.bodies: does not act on `b`: contact on the common grid has no points";
+        assert_eq!(told(tractions, "interior = 'grid'"), [why]);
+        assert_eq!(told(tractions, ""), [""; 0]);
         let found = told("time.end = 1", "interior = 'reference'\nrigid = {}");
         assert_eq!(found, ["bodies[1].interior: does not act: the body is rigid"]);
     }
@@ -324,6 +347,11 @@ mod tests {
             (
                 "contact = [{ overlap = 'press' }]",
                 "contact[0].overlap: does not act: the rule matches rigid bodies only",
+            ),
+            (
+                "outputs.tractions = {}",
+                "outputs.tractions: does not act: it is that of bodies with interior = \"reference\", and the scene \
+                 has none",
             ),
         ] {
             let found = told(rest);

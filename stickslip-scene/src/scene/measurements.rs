@@ -27,6 +27,9 @@ pub struct Measurements {
     /// Packings whose stress and fabric are recorded.
     #[serde(default)]
     pub fabric: Vec<Fabric>,
+    /// Points of contact whose pressure and shear are recorded.
+    #[serde(default)]
+    pub tractions: Option<Tractions>,
 }
 
 /// Words for the faces of a domain, by axis, the lower and the upper one.
@@ -58,6 +61,15 @@ pub struct Fabric {
     pub bodies: Vec<String>,
     /// Lower and upper corner of the box over which stress is averaged; bodies count whose centres are in it [m].
     pub within: [[f64; 3]; 2],
+}
+
+/// Points of contact on bodies on grids of their own, whose pressure and shear are recorded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tractions {
+    /// Time between records [s]; `None`: that between rows of other tables.
+    pub interval: Option<f64>,
+    /// Names of the bodies whose points they are; `None`: all.
+    pub bodies: Option<Vec<String>>,
 }
 
 /// A unit of time that belongs to the scene, such as the time in which a wave crosses a disk.

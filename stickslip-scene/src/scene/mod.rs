@@ -48,7 +48,8 @@ pub use letters::{escaped, shortened, steers_terminal, steers_text};
 pub use load::{Loaded, load, parse, parse_beside};
 pub use loads::{Action, Dashpot, Extent, Load, Part, RIGID, Support, SupportMotion};
 pub use measurements::{
-    Anchor, Arrival, FACES, Fabric, Front, Group, Measurements, Observable, Probe, Reading, Section, TimeUnit,
+    Anchor, Arrival, FACES, Fabric, Front, Group, Measurements, Observable, Probe, Reading, Section,
+    TimeUnit, Tractions,
 };
 pub use name_pattern::{NamePattern, RuleNames, is_pattern};
 pub use outside::{LEAST_CALLS, MOST_CALLS, MeanRoom, OutsideUse, OutsideValue};

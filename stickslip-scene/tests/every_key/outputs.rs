@@ -36,8 +36,14 @@ pub const CASES: &[Cases] = &[
             ("outputs.reactions", "['d']"),
             ("outputs.groups", "[{ name = 'g', bodies = ['a'] }]"),
             ("outputs.fabric", "[{ name = 'f', bodies = ['a'], within = { min = [0, 0], max = [2, 2] } }]"),
+            ("outputs.tractions", "{}"),
             ("references", "[{ body = 'a', quantity = 'x', value = 1, label = 'l' }]"),
         ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[("outputs.tractions", "{}")],
+        keys: &[("outputs.tractions.interval", "0.1"), ("outputs.tractions.bodies", "['a']")],
     },
     Cases {
         scene: PLANE,

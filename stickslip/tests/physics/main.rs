@@ -66,6 +66,7 @@ mod stacks;
 mod starts;
 mod struck_bar;
 mod threads;
+mod tractions;
 mod transfers;
 mod unbounded_bodies;
 mod vibration;

@@ -49,7 +49,9 @@ fn contacts(simulation: &dyn Simulation) -> Vec<([usize; 2], String)> {
 /// What everybody knows of the run, likewise, and what one process and the first rank know of bodies.
 fn known(simulation: &dyn Simulation) -> [String; 2] {
     let (ledger, bodies) = (simulation.ledger(), simulation.bodies());
-    [format!("{} {ledger:?} {:?}", simulation.time(), simulation.relaxation()), format!("{bodies:?}")]
+    let points = simulation.contact_points();
+    let all = format!("{} {ledger:?} {:?} {points:?}", simulation.time(), simulation.relaxation());
+    [all, format!("{bodies:?}")]
 }
 
 /// What each of so many ranks says, which have a thread each.

@@ -95,7 +95,13 @@ pub fn same_bits(text: &str, steps: usize, threads: [usize; 2]) {
                 take_steps(&mut *simulation, 1);
             }
             assert!(simulation.ledger().friction > 0.0, "they slide");
-            format!("{:?} {:?} {:?}", simulation.snapshot(), simulation.ledger(), simulation.bodies())
+            let points = simulation.contact_points();
+            format!(
+                "{:?} {:?} {:?} {points:?}",
+                simulation.snapshot(),
+                simulation.ledger(),
+                simulation.bodies()
+            )
         })
     };
     let one = outcome(1, false);

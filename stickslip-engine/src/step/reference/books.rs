@@ -1,8 +1,40 @@
-//! What points that touch did, as sums by pair of bodies.
+//! What points that touch did: as sums by pair of bodies, and one by one.
 
+use super::Engine;
 use crate::contact::BlockSums;
+use crate::door::{ContactPoint, Touched};
+use crate::lanes::Laned;
 use crate::tensor::{Vector, cross};
 use stickslip_reference::contact::{Memory, Met, Obstacle, Touch};
+
+impl<T: Laned, const D: usize> Engine<T, D> {
+    /// The points that passed a force in the last step, by body, point and partner. All ranks know them.
+    pub(in crate::step) fn pressed_points(&self) -> Vec<ContactPoint> {
+        let bodies = self.state.bodies.len();
+        let touched = |partner: usize| match partner.checked_sub(bodies) {
+            None => Touched::Body(partner),
+            Some(wall) => {
+                let wall = &self.settings.walls[wall];
+                Touched::Face { axis: wall.axis, upper: wall.inward < 0 }
+            }
+        };
+        let shown = |touch: &Touch<D>| ContactPoint {
+            body: touch.memory.body as usize,
+            partner: touched(touch.memory.partner as usize),
+            position: touch.at.space(),
+            undeformed: self.settings.references[touch.side].surface[touch.memory.point as usize]
+                .place
+                .space(),
+            // Zeros get no sign.
+            normal: (Vector::ZERO - touch.normal).space(),
+            area: touch.area,
+            pressure: touch.pressure(),
+            shear: (Vector::ZERO + touch.traction).space(),
+        };
+        let touches = &self.workspace.reference_touching.touches;
+        touches.iter().filter(|touch| touch.force() != Vector::ZERO).map(shown).collect()
+    }
+}
 
 /// Adds up what touches did in a step of `dt` [s], pair by pair in the order of bodies, and what was lost with those
 /// that have parted. Partners have the numbers below `bodies`, faces of the domain those from there on.

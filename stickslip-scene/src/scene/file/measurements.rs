@@ -127,6 +127,17 @@ table! {
 }
 
 table! {
+    /// Points of contact whose pressure and shear are recorded: points of the surfaces of bodies on grids of their own.
+    Tractions {
+        /// Interval between records [s]; by default that of `tables`.
+        interval: Option<QuantityInput<Duration>>,
+        /// Names of the bodies whose points they are, or patterns in which `*` is any letters; by default all on grids
+        /// of their own.
+        bodies: Option<Vec<Text>>,
+    }
+}
+
+table! {
     /// A box.
     Room {
         /// Lower corner [m].
@@ -246,6 +257,8 @@ pub fn resolve(
             Ok(())
         })?;
     }
+    let tractions = outputs.tractions.as_ref();
+    let tractions = tractions.map(|asked| asked.resolve(&bodies, context)).transpose()?;
     let time_unit = outputs.time_unit.as_ref().map(|unit| time_unit(unit, context)).transpose()?;
     let samples = match &outputs.samples {
         None => scene::Measurements::of_run(end).samples,
@@ -263,6 +276,7 @@ pub fn resolve(
             reactions,
             groups,
             fabric,
+            tractions,
         },
         declared,
     ))
@@ -425,6 +439,16 @@ impl Fabric {
             None => moved.to_vec(),
         };
         Ok(scene::Fabric { name, bodies, within: self.within.value(context)? })
+    }
+}
+
+impl Tractions {
+    fn resolve(&self, bodies: &[&str], context: &Context) -> Result<scene::Tractions, Fault> {
+        let names = self.bodies.as_ref().map(|names| names_in(names, (A_BODY, bodies), context));
+        Ok(scene::Tractions {
+            interval: self.interval.as_ref().map(|interval| interval.positive(context)).transpose()?,
+            bodies: names.transpose()?,
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::fringes::Fringes;
-use super::measurements::{self, Arrival, Fabric, Front, Group, Probe, Sampling, Section};
+use super::measurements::{self, Arrival, Fabric, Front, Group, Probe, Sampling, Section, Tractions};
 use super::quantity::{Duration, QuantityInput, evaluate};
 use super::read::{Read, table};
 use super::text::{Choice, Count, Text, Word, names_in};
@@ -68,6 +68,8 @@ table! {
         groups: Option<Vec<Group>>,
         /// Packings whose stress and fabric are recorded, at the times of the tables: [[outputs.fabric]].
         fabric: Option<Vec<Fabric>>,
+        /// Points of contact whose pressure and shear are recorded: those of bodies on grids of their own.
+        tractions: Option<Tractions>,
     }
 }
 
