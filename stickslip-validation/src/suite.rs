@@ -166,7 +166,7 @@ impl Candidate {
         match self {
             Candidate::Law(law) => law.word,
             Candidate::Scheme(scheme) => &scheme.word,
-            Candidate::Own => "own grids",
+            Candidate::Own => "own",
         }
     }
 
@@ -264,10 +264,13 @@ impl SuiteEntry {
     pub fn verdict(&self, target: &Target) -> Verdict {
         let Some(run) = self.judged(target) else { return Verdict::Open };
         match &run.result {
-            Ok(outcome) if outcome.value(target.metric).is_some_and(|value| target.is_met_by(value)) => {
-                Verdict::Reached
-            }
-            _ => Verdict::Missed,
+            Ok(outcome) => match outcome.value(target.metric) {
+                Some(value) if target.is_met_by(value) => Verdict::Reached,
+                // Variants that grids of their own have not.
+                None if self.way == Candidate::Own => Verdict::Open,
+                _ => Verdict::Missed,
+            },
+            Err(_) => Verdict::Missed,
         }
     }
 

@@ -93,6 +93,11 @@ impl<T: Real> Rules<T> {
         self.rules.iter().any(|rule| rule.law == law)
     }
 
+    /// Whether surfaces resist slip or parting by their area under any rule.
+    pub fn bond(&self) -> bool {
+        self.rules.iter().any(|rule| rule.law != ContactLaw::None && rule.friction.bonds())
+    }
+
     /// Whether any law judges the interpolated velocities by themselves, as the paper's do.
     pub fn judge_interpolated(&self) -> bool {
         let judges =

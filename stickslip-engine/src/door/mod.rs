@@ -616,7 +616,7 @@ pub struct ContactPoint {
     pub normal: [f64; 3],
     /// Undeformed area A for which it stands [m^2], in the plane length per depth [m].
     pub area: f64,
-    /// Pressure p, force over undeformed area, at least 0 [Pa].
+    /// Pressure p, force over undeformed area; negative where adhesion pulls [Pa].
     pub pressure: f64,
     /// Shear traction tau on the body [Pa].
     pub shear: [f64; 3],

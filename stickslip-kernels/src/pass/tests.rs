@@ -126,11 +126,15 @@ impl<T: Laned> Work for Thicken<T> {
     type Real = T;
     type Output = ();
 
+    /// As many lanes as the plane has.
     #[inline(always)]
     fn run<M: Machine<T>>(self) {
         neighbours_do_not_matter::<M::Quad>(self.0);
-        neighbours_do_not_matter::<M::Wide>(self.0);
     }
+
+    /// One lane has no neighbours.
+    #[cfg(all(target_arch = "x86_64", not(portable_lanes)))]
+    fn run_anywhere(self) {}
 }
 
 /// Bit for bit, and to round-off of what a particle alone finds with products rounded before sums: neither a lane that

@@ -13,9 +13,9 @@ pub fn begin<const D: usize>(
     touches: &mut [Touch<D>],
     dt: f64,
 ) {
-    for touch in touches.iter_mut().filter(|touch| touch.memory.age == 0.0) {
+    for touch in touches.iter_mut().filter(|touch| touch.memory.age == 0.0 && touch.gap < 0.0) {
         let felt = (approach(bodies, obstacles, touch) * dt).min(-touch.gap);
-        touch.memory.unfelt = -touch.gap - felt;
+        touch.memory.unfelt += -touch.gap - felt;
         touch.memory.patience = if -touch.gap <= LANDED * felt { PATIENCE } else { 1.0 };
         touch.gap = -felt;
     }
@@ -49,15 +49,18 @@ pub fn follow<const D: usize>(
 /// What of a cell the surface of a body may come nearer in a step by the particles that say where it is.
 const JITTER: f64 = 0.005;
 
-/// Adds the pressure and the friction of all points that touch to the forces on the nodes: f_I += N_I A (p n + tau), of
-/// the partner the opposite. What of the stored slip friction does not bear, slips, and takes work.
+/// Adds the pressure and the friction of all points that touch to the forces on the nodes of a step of `dt` [s]:
+/// f_I += N_I A (p n + tau), of the partner the opposite. Bonds that are pulled too strongly give way. What of the
+/// stored slip friction does not bear, slips, and takes work.
 pub fn press<const D: usize>(
     bodies: &mut [Deforming<'_, D>],
-    touches: &mut [Touch<D>],
+    (touches, dt): (&mut [Touch<D>], f64),
     rule: &dyn Fn(&Touch<D>) -> Friction,
 ) {
     for touch in touches {
-        bear(touch, &rule(touch));
+        let friction = rule(touch);
+        hold(touch, friction.adhesion);
+        bear(touch, &friction, dt);
         let force = touch.force();
         let body = &mut bodies[touch.side];
         body.interior.push(&body.surface[touch.memory.point as usize].weights, force);
@@ -70,29 +73,57 @@ pub fn press<const D: usize>(
     }
 }
 
-/// What of the stored slip friction bears, and its traction.
-fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction) {
+/// Bonds a point that presses, and parts a bond that is pulled by more than `adhesion` bears [Pa]. That takes what the
+/// bond stored and what the bodies did on it in the step: of the layer's forces at both ends of it the last is none,
+///
+/// ```text
+/// k A g_0^2 / 2 + k A g_0 (g_1 - g_0) / 2 = k A g_0 g_1 / 2
+/// ```
+fn hold<const D: usize>(touch: &mut Touch<D>, adhesion: f64) {
+    let (depth, stiffness) = (-touch.gap, touch.stiffness[0]);
+    let energy = |before: f64| 0.5 * touch.area * stiffness * before.min(0.0) * depth.min(0.0);
+    let was_bonded = touch.memory.bond.is_some();
+    let bears = depth >= 0.0 || was_bonded && stiffness * -depth <= adhesion;
+    let is_bonded = adhesion > 0.0 && bears;
+    let torn = if was_bonded && !is_bonded { energy(touch.memory.felt[0]) } else { 0.0 };
+    touch.memory.bond = is_bonded.then(|| energy(depth));
+    touch.torn = torn;
+}
+
+/// What of the stored slip s friction bears in a step of `dt` [s], and its traction. Slip that viscosity opposes is
+/// found at the end of the step, which is stable for any viscosity:
+///
+/// ```text
+/// k_t s_1 = b + eta |s - s_1| / dt,   b = mu max(p, 0) + c,   k_t |s| > b
+/// ```
+fn bear<const D: usize>(touch: &mut Touch<D>, friction: &Friction, dt: f64) {
     let stored = Vector::<f64, D>::of(touch.memory.stored);
     let tangential = stored - touch.normal * stored.dot(touch.normal);
     // The layer turns with the surface: what it stored stays as long as it was.
     let (length, along) = (stored.norm(), tangential.norm());
     let tangential = if along > 0.0 { tangential * (length / along) } else { Vector::ZERO };
-    let pressure = touch.pressure();
+    let pressure = touch.push();
     let strength = match friction.memory {
         Some(_) if touch.memory.remembered >= 0.0 && touch.memory.speed > 0.0 => touch.memory.remembered,
         _ => pressure,
     };
     let bound = |coefficient: f64| {
         // An infinite coefficient sticks even without any push.
-        if coefficient.is_finite() { coefficient * strength / touch.stiffness[1] } else { f64::INFINITY }
+        let shear = coefficient * strength + friction.cohesion;
+        if coefficient.is_finite() { shear / touch.stiffness[1] } else { f64::INFINITY }
     };
     let most = if length > bound(friction.at_rest) || touch.memory.speed > 0.0 {
         bound(friction.coefficient(touch.memory.speed))
     } else {
         f64::INFINITY
     };
-    let (kept, slipped) =
-        if length > most { (tangential * (most / length), length - most) } else { (tangential, 0.0) };
+    let (kept, slipped) = if length > most {
+        let excess = length - most;
+        let viscous = friction.viscosity / (friction.viscosity + touch.stiffness[1] * dt);
+        (tangential * ((most + viscous * excess) / length), (1.0 - viscous) * excess)
+    } else {
+        (tangential, 0.0)
+    };
     touch.traction = kept * -touch.stiffness[1];
     // The layer's forces at both ends of the step, on what slips, less what it stores: k/2 (s_0 + s_1) . (s* - s_1).
     let mean = (Vector::<f64, D>::of(touch.memory.borne) + kept) * 0.5;
@@ -120,16 +151,16 @@ pub fn slip<const D: usize>(
         let mut memory = touch.memory;
         memory.stored = (Vector(memory.stored) + Vector((slip * dt).space())).0;
         memory.age += dt;
-        let deeper = memory.unfelt * (dt / (memory.patience * settling(bodies, touch))).min(1.0);
+        let deeper = memory.unfelt.max(0.0) * (dt / (memory.patience * settling(bodies, touch))).min(1.0);
         memory.unfelt -= deeper;
-        memory.felt = [(-touch.gap).max(0.0), deeper];
+        memory.felt = [touch.depth(), deeper];
         // It goes on slipping only as long as its surfaces move that way.
         memory.speed = if memory.speed > 0.0 && slip.dot(touch.traction) < 0.0 { slip.norm() } else { 0.0 };
         if let Some(law) = rule(touch).memory {
             // What sticks has the strength of its pressure: only what slips lags behind.
             memory.remembered = match memory.speed > 0.0 {
-                true => law.after(memory.remembered, (touch.pressure(), slip.norm(), dt), memory.age),
-                false => touch.pressure(),
+                true => law.after(memory.remembered, (touch.push(), slip.norm(), dt), memory.age),
+                false => touch.push(),
             };
         }
         memory

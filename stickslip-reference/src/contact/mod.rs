@@ -2,17 +2,24 @@
 //!
 //! Points of a body's surface are looked for in its partner: where the partner was undeformed, and how deep below its
 //! surface. A point that lies inside is pushed out by a layer that stores energy, and held by the same layer in shear
-//! as far as friction bears. What acts at a point acts on the nodes of both bodies by the functions there, so momentum
-//! is kept to round-off, and spin as closely as the place in the partner is known.
+//! as far as friction and cohesion bear. A bond lets the layer pull as far as adhesion bears. What acts at a point acts
+//! on the nodes of both bodies by the functions there, so momentum is kept to round-off, and spin as closely as the
+//! place in the partner is known.
 //!
 //! ```text
 //! x(X_b) = q                        q: the point, X_b: its place in the partner
 //! g = phi(X_b) / |F^-T N|           gap: undeformed distance phi and normal N of the partner's surface
 //! n = F^-T N / |F^-T N|             normal, out of the partner
 //! p = k (-g),  g < 0                k = beta / (h_a / M_a + h_b / M_b), M: P-wave modulus, h: cell
-//! tau = -k_t s,  |tau| <= mu p      s: slip that the layer stores, ds/dt = u_t, k_t: the same of shear moduli
+//!     and 0 <= k g <= a             where the point is bonded, a: adhesion; beyond, the bond gives way
+//! tau = -k_t s                      s: slip that the layer stores, k_t: the same of shear moduli
+//! ds/dt = u_t - w                   u_t: velocity along the surface against the partner's, w: slip
+//! |tau| <= mu max(p, 0) + c + eta |w|                   equal where it slips, w along s; c: cohesion, eta: viscosity
 //! f_I += N_I(X) A (p n + tau)       A: undeformed area of the point; half of it where the partner looks back
 //! ```
+//! A point touches while g < 0, while it is bonded, and, where its rule has cohesion or viscosity, while g is less than
+//! a hundredth of a cell. Points that touch at the start are bonded by adhesion, and all others once they press.
+//!
 //! Forces that follow from places alone keep energy, and need no solution for all points together; what friction takes
 //! is what the layer cannot bear. Points of both surfaces, each with half its area: Papadopoulos and Taylor (1992); a
 //! layer in shear: Oden and Pires (1983); friction that remembers pressure: Prakash and Clifton (1993).
@@ -30,7 +37,7 @@ pub use act::{approach, begin, follow, press, slip};
 pub use friction::Friction;
 pub use images::PeriodLengths;
 pub use look::{Seen, look};
-pub use near::{Neighbours, Partner, Search, find};
+pub use near::{Bond, Neighbours, Partner, Search, find};
 
 use crate::interior::Interior;
 use crate::surface::SurfacePoint;
@@ -117,12 +124,17 @@ pub struct Memory {
     pub speed: f64,
     /// How long it has touched [s].
     pub age: f64,
-    /// Of the depth at which it came to touch, what its layer does not feel yet [m].
+    /// Of the depth at which it came to touch, what its layer does not feel yet; negative: the gap at which it was
+    /// bonded at the start, which its layer never feels [m].
     pub unfelt: f64,
     /// How long the layer takes to feel it, over how long its bodies settle.
     pub patience: f64,
-    /// The depth that the layer felt in the step before, and how much more of the first depth it then came to feel [m].
+    /// The depth that the layer felt in the step before, negative where a bond was stretched, and how much more of the
+    /// first depth it then came to feel [m].
     pub felt: [f64; 2],
+    /// Energy that its bond stores, stretched [J]; none where it has no bond.
+    #[serde(default)]
+    pub bond: Option<f64>,
 }
 
 impl Memory {
@@ -149,14 +161,18 @@ pub struct Touch<const D: usize> {
     pub normal: Vector<f64, D>,
     /// Gap that the layer feels, negative where it presses [m].
     pub gap: f64,
+    /// Whether it does not touch yet.
+    pub is_ahead: bool,
     /// Undeformed area times the share of this side [m^2], in the plane length [m].
     pub area: f64,
     /// Stiffness of the layer against pressure and against shear [Pa/m].
     pub stiffness: [f64; 2],
     /// Traction of friction on the body [Pa].
     pub traction: Vector<f64, D>,
-    /// Work that friction took in the step [J].
+    /// Work that friction, cohesion and viscosity took in the step [J].
     pub friction: f64,
+    /// Work that its bond took as it gave way in the step [J].
+    pub torn: f64,
     /// Work by which the layer came to feel more of the depth since the step before [J].
     pub deepening: f64,
     /// Velocity along the surface, against the partner's, that moves the bodies in the step [m/s].
@@ -173,14 +189,15 @@ pub enum Met<const D: usize> {
 }
 
 /// The points that touched and do no longer; both lists are ordered by body, point and partner. What their layers
-/// stored in shear is lost to the bodies, as to friction.
+/// stored in shear is lost to the bodies, as to friction, and what their bonds stored, as to adhesion.
 pub fn parted<'a, const D: usize>(
     known: &'a [Memory],
     touches: &'a [Touch<D>],
 ) -> impl Iterator<Item = &'a Memory> {
     let touches_yet =
         |memory: &Memory| touches.binary_search_by_key(&memory.key(), |touch| touch.memory.key()).is_ok();
-    known.iter().filter(move |memory| memory.energy > 0.0 && !touches_yet(memory))
+    let stores = |memory: &Memory| memory.energy > 0.0 || memory.bond > Some(0.0);
+    known.iter().filter(move |memory| stores(memory) && !touches_yet(memory))
 }
 
 impl<const D: usize> Touch<D> {
@@ -192,8 +209,18 @@ impl<const D: usize> Touch<D> {
         }
     }
 
-    /// Pressure of the layer [Pa].
+    /// Depth that the layer feels, negative where a bond is stretched [m].
+    pub fn depth(&self) -> f64 {
+        if self.memory.bond.is_some() { -self.gap } else { (-self.gap).max(0.0) }
+    }
+
+    /// Pressure of the layer, negative where a bond pulls [Pa].
     pub fn pressure(&self) -> f64 {
+        self.stiffness[0] * self.depth()
+    }
+
+    /// Pressure that friction follows: none where a bond pulls [Pa].
+    pub fn push(&self) -> f64 {
         self.stiffness[0] * (-self.gap).max(0.0)
     }
 

@@ -36,6 +36,25 @@ const AHEAD: f64 = 0.25;
 /// What of a gap is certain: gaps are measured along one direction, and some distances are bounds.
 const CERTAIN: f64 = 0.6;
 
+/// How far apart surfaces are at most that touch without pressing, in cells: as on the common grid.
+const BOND: f64 = 0.01;
+
+/// How surfaces that do not press touch by their rule.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Bond {
+    /// Bonds form without a push, at the start: the rule has adhesion.
+    pub forms: bool,
+    /// Slip is opposed: the rule has cohesion or viscosity.
+    pub resists: bool,
+}
+
+impl Bond {
+    /// How far apart surfaces of cells of this side are that come to touch [m].
+    fn reach(self, cell: f64) -> f64 {
+        if self.forms || self.resists { BOND * cell } else { 0.0 }
+    }
+}
+
 /// Points of surfaces that may come to touch, found anew once bodies have moved. They say where to look, not what is
 /// found: touches are the same with neighbours of now and of before.
 #[derive(Clone, Debug, Default)]
@@ -79,6 +98,8 @@ pub struct Search<'a, const D: usize> {
     pub known: &'a [Memory],
     /// Whether a body touches a partner at all.
     pub meet: &'a (dyn Fn(usize, Partner) -> bool + Sync),
+    /// How a body and a partner touch where they do not press; none: no two do.
+    pub bond: Option<&'a (dyn Fn(usize, Partner) -> Bond + Sync)>,
     /// After which lengths everything is there again.
     pub lengths: PeriodLengths<D>,
     /// Which bodies are ready to touch: others are told of what will touch them in one of the next steps.
@@ -102,16 +123,11 @@ pub fn find<const D: usize>(
     let mut all: Vec<Touch<D>> =
         (0..bodies.len()).into_par_iter().map(touches).collect::<Vec<_>>().into_iter().flatten().collect();
     let mut soon: Vec<usize> =
-        all.iter().filter(|touch| is_ahead(touch)).flat_map(|touch| touch.sides()).collect();
+        all.iter().filter(|touch| touch.is_ahead).flat_map(|touch| touch.sides()).collect();
     soon.sort_unstable();
     soon.dedup();
-    all.retain(|touch| !is_ahead(touch));
+    all.retain(|touch| !touch.is_ahead);
     (all, soon)
-}
-
-/// Whether a point does not touch yet. Those that touch may lie outside of the layer that they feel.
-fn is_ahead<const D: usize>(touch: &Touch<D>) -> bool {
-    touch.gap >= 0.0 && touch.memory.age == 0.0
 }
 
 /// Points that are listed as neighbours, over those so near partners that they are looked at in every step: they lie
@@ -244,39 +260,43 @@ impl<const D: usize> Neighbours<D> {
         let point =
             |number: usize| Point { bodies, a, number, at: place(&bodies[a], number), lengths: self.lengths };
         let point = |number: u32| point(number as usize);
+        let bond = |partner: Partner| search.bond.map_or(Bond::default(), |bond| bond(a, partner));
         let again = |memory: &Memory| {
             let partner = memory.partner as usize;
             match bodies.binary_search_by_key(&partner, |body| body.body) {
-                Ok(b) => point(memory.point).in_body((b, 0.0), *memory),
+                Ok(b) => point(memory.point).in_body((b, 0.0, bond(Partner::Deforming(b))), *memory),
                 Err(_) => {
                     let r = obstacles.binary_search_by_key(&partner, |obstacle| obstacle.body()).ok()?;
-                    point(memory.point).in_obstacle((r, obstacles[r], 0.0), *memory)
+                    let bond = bond(Partner::Obstacle(r));
+                    point(memory.point).in_obstacle((r, obstacles[r]), (0.0, bond), *memory)
                 }
             }
         };
         let mut touches: Vec<Touch<D>> = known.iter().filter_map(again).collect();
         let ahead = |ready: bool, cell: f64| if ready { 0.0 } else { AHEAD * cell };
         let is_soon = |touch: &Touch<D>| {
-            !is_ahead(touch)
+            !touch.is_ahead
                 || touch.gap < SOON * search.dt * relative_velocity(bodies, obstacles, touch).norm()
         };
         let pairs = &self.pairs[self.pairs.partition_point(|pair| (pair.body as usize) < a)..];
         for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
             let b = pair.partner as usize;
             let cell = bodies[a].interior.form.cell.min(bodies[b].interior.form.cell);
-            let ahead = ahead(search.ready[a] && search.ready[b], cell);
+            let bond = bond(Partner::Deforming(b));
+            let ahead = ahead(search.ready[a] && search.ready[b], cell).max(bond.reach(cell));
             if pair.gap - ahead <= self.moved[a] + self.moved[b] && !is_known(pair.point, bodies[b].body) {
-                touches.extend(point(pair.point).come_to((b, ahead), pair.place).filter(is_soon));
+                touches.extend(point(pair.point).come_to((b, ahead, bond), pair.place).filter(is_soon));
             }
         }
         let pairs = &self.at_obstacles[self.at_obstacles.partition_point(|pair| (pair.body as usize) < a)..];
         for pair in pairs.iter().take_while(|pair| pair.body as usize == a) {
             let (_, r, moved) = self.beside[pair.beside as usize];
-            let ahead = ahead(search.ready[a], bodies[a].interior.form.cell);
+            let (cell, bond) = (bodies[a].interior.form.cell, bond(Partner::Obstacle(r)));
+            let ahead = ahead(search.ready[a], cell).max(bond.reach(cell));
             if pair.gap - ahead <= self.moved[a] + moved && !is_known(pair.point, obstacles[r].body()) {
                 let point = point(pair.point);
                 let fresh = point.fresh(obstacles[r].body());
-                touches.extend(point.in_obstacle((r, obstacles[r], ahead), fresh).filter(is_soon));
+                touches.extend(point.in_obstacle((r, obstacles[r]), (ahead, bond), fresh).filter(is_soon));
             }
         }
         touches.sort_by_key(|touch| touch.memory.key());
@@ -489,22 +509,32 @@ impl<const D: usize> Point<'_, '_, D> {
             unfelt: 0.0,
             patience: 1.0,
             felt: [0.0; 2],
+            bond: None,
         }
     }
 
-    /// A point that touches, with the share of its area on which it does.
+    /// How far from a partner a point touches by its bond, in cells of this side [m]: one that is bonded until the
+    /// layer says that its bond gives way.
+    fn reach(memory: &Memory, bond: Bond, cell: f64) -> f64 {
+        if memory.bond.is_some() { f64::INFINITY } else { bond.reach(cell) }
+    }
+
+    /// A point that touches, with the share of its area on which it does; one that is further away than `reach` does
+    /// not touch yet.
     fn touch(
         &self,
-        (memory, met, away): (Memory, Met<D>, Vector<f64, D>),
+        (mut memory, met, away): (Memory, Met<D>, Vector<f64, D>),
         (normal, gap): (Vector<f64, D>, f64),
         (share, stiffness): (f64, [f64; 2]),
+        (reach, bond): (f64, Bond),
     ) -> Touch<D> {
+        let is_ahead = memory.age == 0.0 && gap >= reach;
+        if bond.forms && memory.age == 0.0 && memory.bond.is_none() && gap >= 0.0 && !is_ahead {
+            (memory.bond, memory.unfelt) = (Some(0.0), -gap);
+        }
         let gap = gap + memory.unfelt;
         let area = share * self.bodies[self.a].surface[self.number].area;
-        // The layer's forces at both ends of the step give what bodies take of its energy, and this is the rest.
-        let [before, deeper] = memory.felt;
-        let deepening = 0.5 * area * stiffness[0] * (before + (-gap).max(0.0)) * deeper;
-        Touch {
+        let mut touch = Touch {
             memory,
             side: self.a,
             met,
@@ -512,22 +542,28 @@ impl<const D: usize> Point<'_, '_, D> {
             at: self.at,
             normal,
             gap,
+            is_ahead,
             area,
             stiffness,
             traction: Vector::ZERO,
             friction: 0.0,
-            deepening,
+            torn: 0.0,
+            deepening: 0.0,
             slip: Vector::ZERO,
-        }
+        };
+        // The layer's forces at both ends of the step give what bodies take of its energy, and this is the rest.
+        let [before, deeper] = memory.felt;
+        touch.deepening = 0.5 * area * stiffness[0] * (before + touch.depth()) * deeper;
+        touch
     }
 
     /// Looks whether it has come to touch a neighbour that is undeformed about there, or to lie less than so far
     /// `ahead` of it [m]; if so it is sought from the nearest point of the neighbour's surface, whatever was known
     /// before.
-    fn come_to(&self, (b, ahead): (usize, f64), about: Vector<f64, D>) -> Option<Touch<D>> {
+    fn come_to(&self, (b, ahead, bond): (usize, f64, Bond), about: Vector<f64, D>) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let memory = |place: Vector<f64, D>| Memory { place: place.space(), ..self.fresh(partner.body) };
-        let found = Vector::<f64, D>::of(self.in_body((b, ahead), memory(about))?.memory.place);
+        let found = Vector::<f64, D>::of(self.in_body((b, ahead, bond), memory(about))?.memory.place);
         let reach = AROUND * partner.interior.form.cell;
         let is_near = |point: &u32| (partner.surface[*point as usize].place - found).norm() < reach;
         let is_apart = |point: &u32| self.a != b || are_apart(body, [self.number as u32, *point]);
@@ -540,11 +576,11 @@ impl<const D: usize> Point<'_, '_, D> {
         let nearest = all.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         let near = NEAR * body.interior.form.cell.max(partner.interior.form.cell);
         let (_, nearest) = nearest.filter(|(square, _)| *square < near * near)?;
-        self.in_body((b, ahead), memory(partner.surface[nearest as usize].place))
+        self.in_body((b, ahead, bond), memory(partner.surface[nearest as usize].place))
     }
 
     /// Where it lies in a partner, sought from where it did before; of itself what lies far from a place of its own.
-    fn in_body(&self, (b, ahead): (usize, f64), before: Memory) -> Option<Touch<D>> {
+    fn in_body(&self, (b, ahead, bond): (usize, f64, Bond), before: Memory) -> Option<Touch<D>> {
         let (body, partner) = (&self.bodies[self.a], &self.bodies[b]);
         let start = Vector::of(before.place);
         let toward = Some(normal(body, self.number));
@@ -552,15 +588,17 @@ impl<const D: usize> Point<'_, '_, D> {
         let seen = look((&*partner.interior, partner.shape), self.at - away, start, toward)?;
         let own = body.surface[self.number].place;
         let is_beside = self.a == b && (seen.place - own).norm() <= APART * body.interior.form.cell;
-        if seen.distance >= ahead || is_beside {
+        let (h, k) = (body.interior.form.cell, partner.interior.form.cell);
+        let reach = Self::reach(&before, bond, h.min(k));
+        if seen.distance >= ahead.max(reach) || is_beside {
             return None;
         }
-        let (h, k) = (body.interior.form.cell, partner.interior.form.cell);
         let of = |modulus: usize| STIFFNESS / (h / body.moduli[modulus] + k / partner.moduli[modulus]);
         let memory = Memory { place: seen.place.space(), ..before };
         // The partner looks back with the other half.
         let layer = (0.5, [of(0), of(1)]);
-        Some(self.touch((memory, Met::Deforming(b, seen.weights), away), (seen.normal, seen.distance), layer))
+        let what = (memory, Met::Deforming(b, seen.weights), away);
+        Some(self.touch(what, (seen.normal, seen.distance), layer, (reach, bond)))
     }
 
     /// From a partner to that image of it [m] in which what was undeformed at `start` is nearest.
@@ -574,20 +612,25 @@ impl<const D: usize> Point<'_, '_, D> {
 
     fn in_obstacle(
         &self,
-        (r, obstacle, ahead): (usize, &dyn Obstacle, f64),
+        (r, obstacle): (usize, &dyn Obstacle),
+        (ahead, bond): (f64, Bond),
         memory: Memory,
     ) -> Option<Touch<D>> {
-        let (level, away) = nearest(obstacle, self.at);
-        if level.distance.is_nan() || level.distance >= ahead {
-            return None;
-        }
         let body = &self.bodies[self.a];
         let cell = body.interior.form.cell;
+        let (level, away) = nearest(obstacle, self.at);
+        let reach = Self::reach(&memory, bond, cell);
+        if level.distance.is_nan() || level.distance >= ahead.max(reach) {
+            return None;
+        }
         let face = self.face_in(obstacle, (Vector::of(level.gradient), level.distance), cell);
         let softness = obstacle.softness();
         let of = |k: usize| STIFFNESS * body.moduli[k] / (cell + softness[k] * body.moduli[k]);
         let layer = (1.0, [of(0), of(1)]);
-        Some(self.touch((memory, Met::Obstacle(r), away), face, layer))
+        // Beside an edge no face looks at it: there it touches where it lies inside.
+        let is_beside = reach > 0.0 && !looks_at(face.0, normal(body, self.number));
+        let reach = if is_beside { 0.0 } else { reach };
+        Some(self.touch((memory, Met::Obstacle(r), away), face, layer, (reach, bond)))
     }
 
     /// Outward normal and distance of the face of an obstacle that a point came through: near an edge it need not be

@@ -105,6 +105,7 @@ const COMMON_GRID_ONLY: &[(&str, &str)] = &[
     ("M4", "it is about numbers of particles along a side of a cell"),
     ("identity", "it is about glue"),
     ("wedge", "its metal flows"),
+    ("wall", "it is about laws of nodes"),
     ("B14", "it reads the forces at the nodes of the common grid"),
 ];
 

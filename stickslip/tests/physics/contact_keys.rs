@@ -4,7 +4,8 @@
 //! schema, so that one without a case fails.
 //!
 //! Expected: the velocities of the blocks differ from those without the key by more than round-off, and of a law by
-//! which the key does nothing they are the same to the bit, and the reader says so.
+//! which the key does nothing they are the same to the bit, and the reader says so. Keys that act by area do so on
+//! grids of their own, too.
 
 use crate::trial::run_to;
 use std::collections::BTreeSet;
@@ -27,10 +28,15 @@ const CASES: [([f64; 2], &str, &str); 12] = [
 ];
 
 /// Velocities of both blocks and of single particles after a while, and what the reader tells of.
-fn run([vx, vy]: [f64; 2], rule: &str, rigid: &str) -> (Vec<f64>, String) {
+fn run(velocity: [f64; 2], rule: &str, rigid: &str) -> (Vec<f64>, String) {
+    run_in("grid", velocity, rule, rigid)
+}
+
+/// The same on grids of some kind.
+fn run_in(interior: &str, [vx, vy]: [f64; 2], rule: &str, rigid: &str) -> (Vec<f64>, String) {
     let text = format!(
         r#"
-        space = {{ dimension = "plane-strain", interior = "grid", cell = 0.1 }}
+        space = {{ dimension = "plane-strain", interior = "{interior}", cell = 0.1 }}
         time.end = 1
         materials.gel = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
         [[bodies]]
@@ -86,6 +92,16 @@ fn every_key_of_a_rule_acts() {
     left.remove("friction_memory_length");
     left.remove("friction_memory_speed");
     assert!(left.is_empty(), "keys without a case: {left:?}");
+}
+
+#[test]
+fn keys_by_area_act_on_grids_of_their_own() {
+    for (velocity, key) in
+        [([0.5, -0.2], "cohesion = 300"), ([0.0, 0.01], "adhesion = 3000"), ([0.5, -0.2], "viscosity = 300")]
+    {
+        let [without, acts] = ["", key].map(|rule| run_in("reference", velocity, rule, "").0);
+        assert!(differ(&without, &acts), "{key} changes nothing");
+    }
 }
 
 /// The laws that leave bodies alone or make them one have no use for these.

@@ -11,10 +11,12 @@
 //! ```
 //! Set-up: a block 1 m long and 0.5 m high on a rigid floor, 10 cells a metre; light and stiff enough to move as one,
 //! surfaces by the law `surface`. Sheared at its lower face it also shears, turns and shakes,
-//! hence the tolerances of some per cent.
+//! hence the tolerances of some per cent. On a grid of its own: a soft block of 20 kg on a floor of 0.2 m, which a load
+//! that grows by k t pulls up or along (`tests/sound/bonded_block.toml`).
 
 use crate::trial::{RUBBER, run_to, start};
 use stickslip::door::ContactCursor;
+use stickslip::scene::{self, Interior};
 
 struct Block<'a> {
     gravity: f64,
@@ -158,6 +160,43 @@ fn bonds_create_no_energy() {
             );
         }
     }
+}
+
+/// Speed of the block of `bonded_block.toml` on a grid of its own after a second, by axis, with these parameters [m/s].
+/// Its energy, with what friction and bonds took, is the work of the load.
+fn pulled(set: &[(&str, f64)]) -> [f64; 2] {
+    let set: Vec<_> = set.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    let text = include_str!("../sound/bonded_block.toml");
+    let loaded = scene::parse("bonded_block.toml", text, &set).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(loaded.scene.interior(0), Interior::Reference);
+    let mut simulation = stickslip::step::build(&loaded.scene).expect("a sound scene");
+    run_to(&mut *simulation, 1.0, |_| {});
+    let (ledger, [vx, vy, _]) = (simulation.ledger(), simulation.bodies()[0].velocity);
+    println!("{set:?}: {vx:.5} {vy:.5} m/s, {ledger:?}");
+    assert!((ledger.total / ledger.external_work).abs() < 0.01, "{ledger:?}");
+    [vx, vy]
+}
+
+/// A bond of 2 kN across keeps the block down, unless it is pulled up: cohesion of 200 N bears a load along the floor
+/// for half of the second, and all of one of 190 N; viscosity lets it follow the load by a tenth of a second.
+#[test]
+fn a_block_on_a_grid_of_its_own_resists() {
+    let bond = ("adh", 1e4);
+    let [slides, _] = pulled(&[("n", 4.0), bond, ("coh", 1000.0), ("fx", 400.0)]);
+    // m dv/dt = k t - c A from 0.5 s on.
+    assert!((slides / 2.5 - 1.0).abs() < 0.02, "{slides}");
+    let [holds, _] = pulled(&[("n", 4.0), bond, ("coh", 1000.0), ("fx", 190.0)]);
+    assert!(holds.abs() < 0.01, "{holds}");
+    // m dv/dt = k t - eta A v, with m / (eta A) = 0.1 s.
+    let [creeps, _] = pulled(&[("n", 4.0), bond, ("vis", 1000.0), ("fx", 100.0)]);
+    let exact = 0.5 * (1.0 - 0.1 * (1.0 - (-10.0_f64).exp()));
+    assert!((creeps / exact - 1.0).abs() < 0.01, "{creeps} {exact}");
+    // Its lower face bends: the bond gives way from its middle or its ends under 0.7 of its strength or more.
+    let [_, hangs] = pulled(&[("n", 4.0), bond, ("fy", 1000.0)]);
+    assert!(hangs.abs() < 0.01, "{hangs}");
+    let [_, leaves] = pulled(&[("n", 4.0), bond, ("fy", 4000.0)]);
+    let speed = |from: f64| 100.0 * (1.0 - from * from);
+    assert!(leaves > speed(0.51) && leaves < speed(0.35), "{leaves}");
 }
 
 /// The block of 500 kg slides by 0.6 m under mu = 0.2: area 1 m, gap 0, the slip of its centre, work mu m g s.

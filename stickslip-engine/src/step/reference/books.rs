@@ -28,7 +28,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             // Zeros get no sign.
             normal: (Vector::ZERO - touch.normal).space(),
             area: touch.area,
-            pressure: touch.pressure(),
+            pressure: 0.0 + touch.pressure(),
             shear: (Vector::ZERO + touch.traction).space(),
         };
         let touches = &self.workspace.reference_touching.touches;
@@ -49,7 +49,9 @@ pub(super) fn book<const D: usize>(
     let pair_of = |body: usize, partner: usize| [body, if partner < bodies { partner } else { body }];
     for memory in parted {
         let [body, partner] = [memory.body as usize, memory.partner as usize];
-        sums_of(all, pair_of(body, partner)).friction += memory.energy;
+        let sums = sums_of(all, pair_of(body, partner));
+        sums.friction += memory.energy;
+        sums.adhesion += memory.bond.unwrap_or_default();
     }
     for touch in touches {
         let [body, partner] = [touch.memory.body as usize, touch.memory.partner as usize];
@@ -92,13 +94,14 @@ fn add<const D: usize>(
         sums.moment[k] += magnitude * at[k];
         sums.turn[k] += turn[k];
     }
-    sums.normal += push.norm();
+    sums.normal += push.norm().copysign(touch.pressure());
     sums.magnitude += magnitude;
     sums.friction += touch.friction;
+    sums.adhesion += touch.torn;
     // Where the layer does not press yet, friction may remember a pressure.
     if magnitude > 0.0 {
         sums.spread.add(touch.area, at);
-        sums.gap += touch.area * touch.gap.min(0.0);
+        sums.gap -= touch.area * touch.depth();
         sums.nodes += 1;
     }
     sums.slip += touch.area * if touch.friction > 0.0 { touch.slip.norm() * dt } else { 0.0 };

@@ -29,6 +29,7 @@ use super::among::Among;
 use super::state::{Settings, Workspace};
 use super::walls::middle;
 use crate::body::{Body, Particle, Totals};
+use crate::contact::Rules;
 use crate::door::{RestoreError, SavedState, StepError};
 use crate::geometry::form::{Form, HeldFaces, NoForm};
 use crate::geometry::{MirroredShape, Shape};
@@ -49,8 +50,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip_reference::contact::{
-    Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Search, Touch,
-    approach, begin, find, follow, parted, press, slip,
+    Bond, Deforming, Friction, Memory, Met, Neighbours, Obstacle, Partner, PeriodLengths, STIFFNESS, Search,
+    Touch, approach, begin, find, follow, parted, press, slip,
 };
 use stickslip_reference::interior::{Asked, Interior, Straining, strain};
 use stickslip_reference::surface::{SurfacePoint, points};
@@ -343,19 +344,29 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let rigid = rigid_bodies(&settings.rigid, &state.bodies, settings.lengths);
         let common = common_bodies(&settings.common, (grid, skin));
         let obstacles = all_obstacles((&rigid, &common), &walls);
-        let meet = |a: usize, partner: Partner| {
+        let numbers = |a: usize, partner: Partner| {
             let other = match partner {
                 Partner::Deforming(b) => settings.references[b].body,
                 Partner::Obstacle(r) => obstacles[r].body(),
             };
-            meets(settings.references[a].body, other)
+            [settings.references[a].body, other]
         };
+        let meet = |a: usize, partner: Partner| {
+            let [body, other] = numbers(a, partner);
+            meets(body, other)
+        };
+        let starts = state.steps == 0;
+        let bond = |a: usize, partner: Partner| {
+            let [body, other] = numbers(a, partner);
+            if other < count { bond(&settings.rules, [body, other], starts) } else { Bond::default() }
+        };
+        let bond = settings.rules.bond().then_some(&bond as &(dyn Fn(usize, Partner) -> Bond + Sync));
         let known = &state.references.touching;
         let layers = &mut state.references.layers;
         layers.resize(bodies.len(), Layers::default());
         let before = layers.clone();
         let ready: Vec<bool> = before.iter().map(|layers| layers.lingers > 0.0).collect();
-        let search = Search { known, meet: &meet, lengths: settings.lengths, ready: &ready, dt };
+        let search = Search { known, meet: &meet, bond, lengths: settings.lengths, ready: &ready, dt };
         let (mut touches, soon) = find((&bodies, &obstacles), search, neighbours);
         let lingers = |side: usize| LINGERS * settings.references[side].transit + dt;
         soon.into_iter().for_each(|side| layers[side].lingers = lingers(side));
@@ -380,7 +391,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let pressed = waiting.iter().map(|touch| (touch.side, touch.area * touch.pressure()));
         let unfelt = touches.iter().map(|touch| (touch.side, touch.unfelt_force()));
         let unfelt = pressed.chain(unfelt).collect();
-        press(&mut bodies, &mut touches, &|touch| friction(settings, touch, count));
+        press(&mut bodies, (&mut touches, dt), &|touch| friction(settings, touch, count));
         drop(obstacles);
         grid.push((&settings.common, skin), &mut field.nodes, &touches);
         reference_walls.clear();
@@ -926,8 +937,17 @@ fn all_obstacles<'a, T: Laned, const D: usize>(
     bodies.into_iter().chain(walls.iter().map(|wall| wall as &dyn Obstacle)).collect()
 }
 
-/// Friction at a point, by its face or the rule of its pair, where there are so many bodies; without a memory there,
-/// with that of the body that is slower.
+/// How two bodies touch where they do not press, in the first step or a later one.
+fn bond<T: Laned>(rules: &Rules<T>, [a, b]: [usize; 2], starts: bool) -> Bond {
+    let friction = &rules.rule(rules.number(a, b)).friction;
+    Bond {
+        forms: starts && friction.adhesion > T::ZERO,
+        resists: friction.cohesion > T::ZERO || friction.viscosity > T::ZERO,
+    }
+}
+
+/// What a point bears, by its face or the rule of its pair, where there are so many bodies; without a memory of
+/// friction there, with that of the body that is slower.
 fn friction<T: Laned, const D: usize>(
     settings: &Settings<T, D>,
     touch: &Touch<D>,
@@ -951,5 +971,8 @@ fn friction<T: Laned, const D: usize>(
         kinetic: double.kinetic,
         decay_speed: double.decay_speed,
         memory: (memory.length > 0.0).then_some(memory),
+        cohesion: double.cohesion,
+        adhesion: double.adhesion,
+        viscosity: double.viscosity,
     }
 }

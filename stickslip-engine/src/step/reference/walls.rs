@@ -99,5 +99,5 @@ impl<const D: usize> Obstacle for RigidWall<D> {
 /// Friction on a closed face: none on a mirror, and a fixed one holds what touches it.
 pub(super) fn friction(face: Face) -> Friction {
     let coefficient = if face == Face::Fixed { f64::INFINITY } else { 0.0 };
-    Friction { at_rest: coefficient, kinetic: coefficient, decay_speed: 0.0, memory: None }
+    Friction { at_rest: coefficient, kinetic: coefficient, ..Friction::default() }
 }

@@ -14,9 +14,6 @@ const OF_RULE: &[Refusal] = &[
         |rule| (rule.law != ContactLaw::Surface).then(|| law(rule)),
         "\"surface\", the default, or \"none\"",
     ),
-    ("cohesion", |rule| above_zero(rule.cohesion), "0, the default"),
-    ("adhesion", |rule| above_zero(rule.adhesion), "0, the default"),
-    ("viscosity", |rule| above_zero(rule.viscosity), "0, the default"),
     ("restitution", |rule| above_zero(rule.restitution), "0, the default"),
     ("overlap", |rule| rule.press.map(|_| "\"press\"".to_string()), "\"kept\", the default"),
 ];

@@ -312,13 +312,10 @@ fn bodies_that_steps_would_wait_for_are_refused() {
 }
 
 #[test]
-fn rules_of_such_bodies_say_no_more_than_friction() {
+fn rules_of_such_bodies_have_what_acts_at_points() {
     for (rule, key, found, allowed) in [
         ("law = 'gap'", "law", "\"gap\"", "\"surface\", the default, or \"none\""),
         ("law = 'glued'", "law", "\"glued\"", "\"surface\", the default, or \"none\""),
-        ("cohesion = 2", "cohesion", "2", "0, the default"),
-        ("adhesion = 2", "adhesion", "2", "0, the default"),
-        ("viscosity = 2", "viscosity", "2", "0, the default"),
         ("restitution = 0.5", "restitution", "0.5", "0, the default"),
         ("overlap = 'press'", "overlap", "\"press\"", "\"kept\", the default"),
     ] {
@@ -330,6 +327,10 @@ fn rules_of_such_bodies_say_no_more_than_friction() {
             assert_eq!(refused(&scene(&top, &[("space.interior", "reference")])), expected);
             assert_eq!(problems(&scene(&top, &[("bodies[0].interior", "grid")])), Ok(()), "{top}");
         }
+    }
+    for interior in ["grid", "reference"] {
+        let top = "contact = [{ friction = 0.5, cohesion = 2, adhesion = 2, viscosity = 2 }]";
+        assert_eq!(problems(&scene(top, &[("bodies[1].interior", interior)])), Ok(()), "{interior}");
     }
 }
 
@@ -356,8 +357,8 @@ fn many_grains_take_no_longer_than_few() {
     let copies = (0..20_000).map(|i| crate::scene::Body { name: format!("grain {i}"), ..grain.clone() });
     scene.bodies.extend(copies);
     assert_eq!(check(&scene), Ok(()));
-    scene.contact.push(ContactRule { viscosity: 1.0, ..ContactRule::default() });
-    assert_eq!(check(&scene).expect_err("viscosity").key, "contact[0].viscosity");
+    scene.contact.push(ContactRule { restitution: 0.5, ..ContactRule::default() });
+    assert_eq!(check(&scene).expect_err("restitution").key, "contact[0].restitution");
 }
 
 /// Elastic bodies are on grids of their own where the scene leaves it open, and nothing speaks against it.
@@ -391,12 +392,14 @@ fn scenes_that_leave_it_open_have_what_fits_their_bodies() {
     let water = chosen(&format!("{time}\n{}{}", disk("a", "rubber", ""), disk("b", "water", "")));
     let why = "`b` is of a material that may flow or part, `neo_hookean`";
     assert_eq!(water, (Interior::Grid, Some(why.to_string())), "a fluid has no surface that it could find");
-    let sticky = "contact = [{ cohesion = 1 }]";
-    let both = disk("a", "rubber", "") + &disk("b", "clay", "");
-    let (_, because) = chosen(&format!("{time}\n{sticky}\n{both}"));
+    let ruled = |rule: &str| {
+        let both = disk("a", "rubber", "") + &disk("b", "clay", "");
+        chosen(&format!("{time}\ncontact = [{{ {rule} }}]\n{both}"))
+    };
+    assert_eq!(ruled("cohesion = 1, adhesion = 1, viscosity = 1"), (Interior::Reference, None));
     assert_eq!(
-        because.as_deref(),
-        Some("`contact[0].cohesion` is 1 between `a` and `b`"),
+        ruled("law = 'gap'").1.as_deref(),
+        Some("`contact[0].law` is \"gap\" between `a` and `b`"),
         "what stands in the way"
     );
     let rigid = disk("b", "clay", "rigid = {}");
