@@ -6,8 +6,9 @@ use std::process::{Command, Stdio};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // A profile with debug information is for whoever looks for names.
-    if of_cargo("PROFILE") == "release" && of_cargo("DEBUG") == "false" {
+    // A profile with debug information is for whoever looks for names, and Windows has them in files beside the program.
+    let is_release = of_cargo("PROFILE") == "release" && of_cargo("DEBUG") == "false";
+    if is_release && of_cargo("CARGO_CFG_TARGET_ENV") != "msvc" {
         // As a compiler takes it that links, and as a linker does.
         let strip = ["-Wl,--strip-all", "--strip-all"].into_iter().find(|argument| links(argument));
         strip.into_iter().for_each(|argument| println!("cargo::rustc-link-arg-bins={argument}"));

@@ -219,7 +219,7 @@ fn a_run_that_did_not_finish_stays_until_another_has() {
     let run = |more: &[&str]| {
         workplace.run(&[&["run", "scene.toml", "--set", "time.end=0.05", "--set"][..], more].concat())
     };
-    let stops = ["--set", "health.energy={ then = 'stop', bound = 1e-9 }"];
+    let stops = ["--set", "health.speed={ then = 'stop', bound = 1e-9 }"];
     let stopped = run(&[&[COARSE][..], &stops].concat());
     assert_eq!(stopped.code, Some(1), "{}", stopped.stderr);
     let out = workplace.path("scene.results");

@@ -91,8 +91,6 @@ pub struct Target {
     /// Where the law or scheme of scenes that name none is known to miss it, and by how much at the most; any other
     /// miss is a fault of the program.
     pub misses: &'static [Miss],
-    /// The same of bodies on grids of their own.
-    pub own_misses: &'static [Miss],
 }
 
 /// A known miss, and how far it may go.
@@ -172,7 +170,7 @@ impl Resolution {
 impl Target {
     /// A target at every resolution.
     pub const fn new(metric: &'static str, exact: f64, allowed: Allowed, why: &'static str) -> Self {
-        Target { metric, exact, allowed, at: None, why, misses: &[], own_misses: &[] }
+        Target { metric, exact, allowed, at: None, why, misses: &[] }
     }
 
     /// The same target, stated for one resolution.
@@ -183,11 +181,6 @@ impl Target {
     /// The same target, known to be missed by the law or scheme of scenes that name none.
     pub const fn missed(self, misses: &'static [Miss]) -> Self {
         Target { misses, ..self }
-    }
-
-    /// The same target, known to be missed on grids of their own.
-    pub const fn missed_on_own_grids(self, own_misses: &'static [Miss]) -> Self {
-        Target { own_misses, ..self }
     }
 
     /// Whether a value that misses the target is as far off as one of the known misses at this resolution, and no

@@ -31,6 +31,9 @@ mod scenery;
 // The benchmarks, one file each.
 mod benchmarks;
 
+// Bodies on grids of their own: what they cannot be put to, and what they are known to miss.
+mod own_grids;
+
 // Schemes of the step: what a scene's keys choose, in every combination.
 mod scheme;
 
@@ -41,6 +44,7 @@ pub use benchmark::{Allowed, Benchmark, Case, Laws, Miss, Reason, Resolution, Ta
 pub use benchmarks::BENCHMARKS;
 pub use failure::CaseFailure;
 pub use outcome::{Measurement, Outcome};
+pub use own_grids::own_misses;
 pub use scheme::{KEYS, Key, Scheme, schemes};
 pub use suite::{Candidate, Finished, LawUnderTest, Run, Suite, SuiteEntry, SuiteReport, Verdict, laws};
 pub use trial::{RunRecord, Trial};

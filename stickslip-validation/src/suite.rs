@@ -1,9 +1,9 @@
 //! All chosen laws and schemes through all chosen benchmarks, side by side on the machine's cores.
 
 use crate::benchmark::{Benchmark, Case, Laws, Miss, Resolution, Target, Tier};
-use crate::benchmarks::common_grid_only;
 use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
+use crate::own_grids::{common_grid_only, is_not_measured, own_misses, own_reasons};
 use crate::scheme::{Scheme, schemes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -266,8 +266,7 @@ impl SuiteEntry {
         match &run.result {
             Ok(outcome) => match outcome.value(target.metric) {
                 Some(value) if target.is_met_by(value) => Verdict::Reached,
-                // Variants that grids of their own have not.
-                None if self.way == Candidate::Own => Verdict::Open,
+                None if self.is_exempt(target) => Verdict::Open,
                 _ => Verdict::Missed,
             },
             Err(_) => Verdict::Missed,
@@ -291,7 +290,20 @@ impl SuiteEntry {
 
     /// Where it is known to miss a target.
     pub fn misses(&self, target: &Target) -> &'static [Miss] {
-        if self.way == Candidate::Own { target.own_misses } else { target.misses }
+        if self.way == Candidate::Own { own_misses(self.benchmark, target) } else { target.misses }
+    }
+
+    /// Whether a target is of a variant that grids of their own do not have.
+    pub fn is_exempt(&self, target: &Target) -> bool {
+        self.way == Candidate::Own && is_not_measured(self.benchmark, target)
+    }
+
+    /// Why it misses targets, as far as that is known.
+    pub fn reasons(&self) -> Vec<&'static str> {
+        match self.way {
+            Candidate::Own => own_reasons(self.benchmark).collect(),
+            _ => self.benchmark.reasons(self.way.word()).collect(),
+        }
     }
 
     /// How the law or scheme did by all targets: missed if one is, open if all are.

@@ -4,7 +4,8 @@ use crate::failure::CaseFailure;
 use crate::penetration::penetration;
 use std::time::Instant;
 use stickslip::door::{
-    BodyState, ContactCursor, ContactState, GridSnapshot, Ledger, LoadState, ParticleSnapshot, Simulation,
+    BodyState, ContactCursor, ContactPoint, ContactState, GridSnapshot, Ledger, LoadState, ParticleSnapshot,
+    Simulation,
 };
 use stickslip::march::March;
 use stickslip::scene::{Face, Scene};
@@ -244,6 +245,11 @@ impl Trial {
     /// The grid of the last step.
     pub fn grid(&self) -> GridSnapshot {
         self.simulation.grid_snapshot()
+    }
+
+    /// The points of bodies on grids of their own at which contact acted in the last step.
+    pub fn contact_points(&self) -> Vec<ContactPoint> {
+        self.simulation.contact_points()
     }
 
     /// What contact did in the last step.

@@ -5,7 +5,7 @@ use crate::page::{Cell, Column, Making, Mark, Page, Section, Table, address};
 use std::time::Duration;
 use stickslip_validation::{
     Benchmark, Candidate, Laws, Measurement, Miss, Resolution, Run, RunRecord, SuiteEntry, SuiteReport,
-    Target, Tier, Verdict,
+    Target, Tier, Verdict, own_misses,
 };
 
 /// The page; it took so long.
@@ -174,7 +174,7 @@ fn section(benchmark: &'static Benchmark, report: &SuiteReport) -> Section {
     }
     section = section.table(results(benchmark, report));
     for entry in entries(benchmark, report).filter(|entry| entry.overall() == Verdict::Missed) {
-        for reason in benchmark.reasons(entry.way.word()) {
+        for reason in entry.reasons() {
             section = section.text(format!("What {} misses: {reason}", entry.way.word()));
         }
     }
@@ -248,7 +248,13 @@ fn targets(benchmark: &Benchmark) -> Table {
 fn misses(benchmark: &Benchmark, target: &Target) -> String {
     let miss = |miss: &Miss| format!("{} at {} = {}", miss.off, benchmark.measure, miss.cells);
     let own = |it: &Miss| format!("{} on own grids", miss(it));
-    target.misses.iter().map(miss).chain(target.own_misses.iter().map(own)).collect::<Vec<_>>().join(", ")
+    target
+        .misses
+        .iter()
+        .map(miss)
+        .chain(own_misses(benchmark, target).iter().map(own))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// What every run records.

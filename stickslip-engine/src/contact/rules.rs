@@ -95,7 +95,11 @@ impl<T: Real> Rules<T> {
 
     /// Whether surfaces resist slip or parting by their area under any rule.
     pub fn bond(&self) -> bool {
-        self.rules.iter().any(|rule| rule.law != ContactLaw::None && rule.friction.bonds())
+        self.rules.iter().any(|rule| match rule.law {
+            ContactLaw::None => false,
+            ContactLaw::Glued => true,
+            _ => rule.friction.bonds(),
+        })
     }
 
     /// Whether any law judges the interpolated velocities by themselves, as the paper's do.

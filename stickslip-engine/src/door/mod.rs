@@ -328,6 +328,10 @@ pub struct Ledger {
     /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J];
     /// constant in an exact solution.
     pub total: f64,
+    /// By how much, either way, kinetic and strain energy of bodies on grids of their own do not add up, for they are half
+    /// a step apart [J].
+    #[serde(default)]
+    pub half_step: f64,
     /// Linear momentum [kg m/s].
     pub momentum: [f64; 3],
     /// Angular momentum about the origin [kg m^2/s].

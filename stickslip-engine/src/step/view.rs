@@ -142,14 +142,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let (bodies, kernels) = (self.shown(), self.kernels);
         known
             .get_or_insert_with(|| {
-                let works = self.works_of_half_a_step();
                 let sum = |range: Range<usize>| {
                     let totals = bodies[range.start].totals(kernels);
-                    (range.start, self.with_nodes(range.start, totals, &works))
+                    (range.start, self.with_nodes(range.start, totals))
                 };
                 let Some(among) = &self.among else { return by_parts(bodies.len(), 1, sum).into() };
                 let all = among.totals(bodies, kernels);
-                all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals, &works))).collect()
+                all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals))).collect()
             })
             .clone()
     }
@@ -161,7 +160,7 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             Some(among) => among.totals_of(body, self.kernels),
             None => body.totals(self.kernels),
         };
-        self.with_nodes(number, totals, &self.works_of_half_a_step())
+        self.with_nodes(number, totals)
     }
 
     /// What a snapshot has of some particles.
@@ -303,6 +302,7 @@ impl<T: Laned, const D: usize> View for Engine<T, D> {
             removed_energy: removed(&|removed| removed.energy),
             removed_momentum: [0, 1, 2].map(|i| removed(&|removed| removed.momentum[i])),
             removed_angular_momentum: [0, 1, 2].map(|i| removed(&|removed| removed.angular_momentum[i])),
+            half_step: self.work_of_half_a_step(),
             ..Ledger::default()
         };
         let gravity = Vector::<T, D>::of(self.settings.gravity.constant().unwrap_or_default()).space();

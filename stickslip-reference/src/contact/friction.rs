@@ -23,6 +23,17 @@ pub struct Friction {
 }
 
 impl Friction {
+    /// That of a point which nothing parts and nothing moves along.
+    pub const GLUE: Self = Friction {
+        at_rest: f64::INFINITY,
+        kinetic: f64::INFINITY,
+        decay_speed: 0.0,
+        memory: None,
+        cohesion: 0.0,
+        adhesion: f64::INFINITY,
+        viscosity: 0.0,
+    };
+
     /// The coefficient of a point that slips at this speed [m/s].
     pub fn coefficient(&self, speed: f64) -> f64 {
         coefficient([self.at_rest, self.kinetic], self.decay_speed, speed)

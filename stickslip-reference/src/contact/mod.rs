@@ -237,6 +237,9 @@ impl<const D: usize> Touch<D> {
 
     /// Force that the layer has yet to feel where it is now [N].
     pub fn unfelt_force(&self) -> f64 {
+        if self.memory.patience == f64::INFINITY {
+            return 0.0;
+        }
         self.area * self.stiffness[0] * (self.memory.unfelt - self.gap.max(0.0)).max(0.0)
     }
 }

@@ -39,6 +39,9 @@ const CERTAIN: f64 = 0.6;
 /// How far apart surfaces are at most that touch without pressing, in cells: as on the common grid.
 const BOND: f64 = 0.01;
 
+/// How far apart surfaces are at most that are glued at the start, in cells: less than a point of a slanted face beside.
+const GLUE: f64 = 0.1;
+
 /// How surfaces that do not press touch by their rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bond {
@@ -46,12 +49,18 @@ pub struct Bond {
     pub forms: bool,
     /// Slip is opposed: the rule has cohesion or viscosity.
     pub resists: bool,
+    /// Surfaces are glued: what lies so near at the start that it is meant to touch is, as it lies.
+    pub is_glue: bool,
 }
 
 impl Bond {
     /// How far apart surfaces of cells of this side are that come to touch [m].
     fn reach(self, cell: f64) -> f64 {
-        if self.forms || self.resists { BOND * cell } else { 0.0 }
+        match self {
+            Bond { forms: true, is_glue: true, .. } => GLUE * cell,
+            Bond { forms: true, .. } | Bond { resists: true, .. } => BOND * cell,
+            _ => 0.0,
+        }
     }
 }
 
@@ -529,8 +538,12 @@ impl<const D: usize> Point<'_, '_, D> {
         (reach, bond): (f64, Bond),
     ) -> Touch<D> {
         let is_ahead = memory.age == 0.0 && gap >= reach;
-        if bond.forms && memory.age == 0.0 && memory.bond.is_none() && gap >= 0.0 && !is_ahead {
-            (memory.bond, memory.unfelt) = (Some(0.0), -gap);
+        if bond.forms && memory.age == 0.0 && memory.bond.is_none() && !is_ahead {
+            (memory.bond, memory.unfelt) = (Some(0.0), -gap.max(0.0));
+            if bond.is_glue {
+                // Its layer never feels how deep it lies.
+                (memory.unfelt, memory.patience) = (-gap, f64::INFINITY);
+            }
         }
         let gap = gap + memory.unfelt;
         let area = share * self.bodies[self.a].surface[self.number].area;

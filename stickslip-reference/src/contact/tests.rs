@@ -105,6 +105,7 @@ impl<const D: usize> Meeting<D> {
         let bond = Bond {
             forms: self.time == 0.0 && friction.adhesion > 0.0,
             resists: friction.cohesion > 0.0 || friction.viscosity > 0.0,
+            is_glue: false,
         };
         let of_all = move |_: usize, _: Partner| bond;
         let of_all: &(dyn Fn(usize, Partner) -> Bond + Sync) = &of_all;

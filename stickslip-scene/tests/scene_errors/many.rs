@@ -427,7 +427,7 @@ fn mistakes() {
         content("columns = [\"velocity\", \"stres\"]"),
         "a.toml:63:24: outputs.snapshots.columns[1]: found \"stres\"; allowed: a column of particles (\"velocity\", \
          \"mass\", \"volume\", \"deformation\", \"stress\", \"pressure\", \"von_mises\", \"strain_rate\", \
-         \"bulk_viscosity\", \"initial_stretch\", \"temperature\", \"thermal_strain_step\", and 1 more); did you mean `stress`?"
+         \"bulk_viscosity\", \"initial_stretch\", \"temperature\", \"thermal_strain_step\"); did you mean `stress`?"
     );
     assert_eq!(
         content("every = 0"),

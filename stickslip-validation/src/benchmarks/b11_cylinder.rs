@@ -6,6 +6,7 @@ use crate::failure::CaseFailure;
 use crate::outcome::Outcome;
 use crate::trial::Trial;
 use std::collections::BTreeMap;
+use stickslip::door::Touched;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "B11",
@@ -44,6 +45,7 @@ const WHY: &str = "an eighth of the half-width is a cell; b/R = 0.1 departs from
 const HALF_WIDTH: f64 = 0.1;
 const RAMP: f64 = 20.0;
 const REST: f64 = 10.0;
+const FLOOR: usize = 1;
 
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let (h, interior) = (HALF_WIDTH / case.cells, case.interior);
@@ -78,26 +80,41 @@ law = "glued"
             case.contact(0.0)
         ),
     )?;
-    // Force at each node of the floor, by its place along x in cells.
-    let mut impulses: BTreeMap<i64, f64> = BTreeMap::new();
+    // Of each node of the floor, or of each point of the cylinder on its own grid: place along x, impulse, and impulse
+    // over the width for which it stands.
+    let mut impulses: BTreeMap<u64, [f64; 3]> = BTreeMap::new();
+    let mut add = |key: f64, place: f64, impulse: f64, width: f64| {
+        let [at, sum, over] = impulses.entry(key.to_bits()).or_default();
+        (*at, *sum, *over) = (place, *sum + impulse, *over + impulse / width);
+    };
     let mut duration = 0.0;
     while trial.advance()? {
-        if trial.time() > RAMP {
-            duration += trial.step_length();
-            let grid = trial.grid();
-            for (node, impulse) in grid.contact_impulse.iter().enumerate() {
-                if grid.body[node] == 0 && grid.position[node][1] < 0.5 && impulse[1] != 0.0 {
-                    *impulses.entry((grid.position[node][0] / h).round() as i64).or_default() += impulse[1];
-                }
+        let dt = trial.step_length();
+        if trial.time() <= RAMP {
+            continue;
+        }
+        duration += dt;
+        if case.is_own() {
+            for point in trial.contact_points().iter().filter(|point| point.partner == Touched::Body(FLOOR)) {
+                let impulse = point.area * point.pressure * dt;
+                add(point.undeformed[0], point.position[0], impulse, point.area);
+            }
+            continue;
+        }
+        let grid = trial.grid();
+        for (node, impulse) in grid.contact_impulse.iter().enumerate() {
+            let [x, y, _] = grid.position[node];
+            if grid.body[node] == 0 && y < 0.5 && impulse[1] != 0.0 {
+                add((x / h).round(), (x / h).round() * h, impulse[1], h);
             }
         }
     }
-    let load = impulses.values().sum::<f64>() / duration;
+    let load = impulses.values().map(|[_, impulse, _]| impulse).sum::<f64>() / duration;
     let modulus = 1.0 / (1.0 - 0.3 * 0.3);
     let half_width = (4.0 * load / (std::f64::consts::PI * modulus)).sqrt();
     let pressure = 2.0 * load / (std::f64::consts::PI * half_width);
-    let second: f64 = impulses.iter().map(|(&x, impulse)| (x as f64 * h).powi(2) * impulse / duration).sum();
-    let largest = impulses.values().fold(0.0, |max: f64, impulse| max.max(impulse / duration / h));
+    let second: f64 = impulses.values().map(|[x, impulse, _]| x * x * impulse / duration).sum();
+    let largest = impulses.values().fold(0.0, |max: f64, [_, _, over]| max.max(over / duration));
     let mut outcome = Outcome::default();
     outcome.measure("half-width over Hertz", 2.0 * (second / load).sqrt() / half_width);
     outcome.measure("largest pressure over Hertz", largest / pressure);

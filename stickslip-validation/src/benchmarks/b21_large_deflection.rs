@@ -128,13 +128,14 @@ law = "glued"
 
 /// How far the centre is down from the root of a beam that stands out from a fixed face.
 fn bend(case: &Case, gravity: f64, outcome: &mut Outcome) -> Result<f64, CaseFailure> {
+    let damped = if case.is_own() { "relax = { residual = 1e-4 }" } else { "pic_share = 1" };
     let mut trial = Trial::start(
         "in_place",
         format!(
             r#"title = "Beam that bends far under its own weight, in place"
 gravity = [0, -{gravity}]
 {}domain = {{ min = [0, -8], max = [12, 4], x_min = "fixed" }}
-{}pic_share = 1
+{}{damped}
 [materials.rubber]
 density = 1
 neo_hookean = {{ young_modulus = 1, poisson_ratio = {POISSON} }}
@@ -148,14 +149,15 @@ shape.box = {{ min = [0, -0.5], max = [{LENGTH}, 0.5] }}
             case.time(2.0 * PERIOD).replace("rflip", "flip")
         ),
     )?;
-    let mut drop = TimeMean::default();
+    let (mut drop, mut rest) = (TimeMean::default(), None);
     while trial.advance()? {
+        rest = trial.is_at_rest().then(|| -trial.bodies()[0].position[1]);
         if trial.time() > PERIOD {
             drop.add(-trial.bodies()[0].position[1], trial.step_length());
         }
     }
     outcome.include(trial);
-    Ok(drop.value())
+    Ok(rest.unwrap_or_else(|| drop.value()))
 }
 
 /// Where the centre of mass of a beam is that stands out from the origin along x.

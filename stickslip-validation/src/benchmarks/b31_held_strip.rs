@@ -97,12 +97,15 @@ fn pull(
 ) -> Result<[f64; 2], CaseFailure> {
     let h = LENGTH / case.cells;
     let grip = 3.0 * h;
+    let finer = match case.is_own() {
+        true => String::new(),
+        false => format!("particles_per_side = {particles_per_side}\n"),
+    };
     let mut trial = Trial::start(
         name,
         format!(
             r#"title = "Held and pulled strip"
-{}particles_per_side = {particles_per_side}
-{}[materials.rubber]
+{}{finer}{}[materials.rubber]
 density = 1000
 neo_hookean = {{ young_modulus = {YOUNG}, poisson_ratio = {POISSON} }}
 [[bodies]]

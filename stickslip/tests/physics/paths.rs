@@ -3,7 +3,7 @@
 //! Set-up: a soft ball and a stone that fly into each other and a rigid floor before a symmetry face, with friction,
 //! gravity, and a share of PIC; both round, for next to an edge round-off decides which way a surface looks; in the
 //! plane and in space, both precisions, both bases, all stress updates, with one lane and on every path that this
-//! processor has. A naive pass of its own is held against both in `stickslip-engine/src/step/naive_tests.rs`.
+//! processor has. A naive pass of its own is held against both in `stickslip-engine/tests/engine/naive.rs`.
 //!
 //! Expected: after 60 steps (15 with linear functions) positions agree within 1e-10 of the bodies' size and velocities
 //! within 1e-9 of their speed in double precision, 1e-5 and 1e-3 in single: a product and a sum are rounded once or

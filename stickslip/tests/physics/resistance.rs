@@ -199,6 +199,46 @@ fn a_block_on_a_grid_of_its_own_resists() {
     assert!(leaves > speed(0.51) && leaves < speed(0.35), "{leaves}");
 }
 
+/// A block of ten cells on a grid of its own, glued between a ceiling and a floor that lie against it, or so far off [m]:
+/// it hangs by its weight, m g H/(2 M) lower in its middle at most, and nothing pulls it to them.
+#[test]
+fn glue_holds_a_block_as_it_lies() {
+    for far in [0.0, 2e-4] {
+        let mut simulation = start(&format!(
+            r#"
+            gravity = [0, -9.81]
+            space = {{ dimension = "plane-strain", interior = "reference", cell = 0.01 }}
+            time.end = 1
+            contact = [{{ law = "glued" }}]
+            {RUBBER}
+            [[bodies]]
+            name = "block"
+            material = "rubber"
+            shape.box = {{ min = [0, 0], max = [0.1, 0.1] }}
+            [[bodies]]
+            name = "ceiling"
+            material = "rubber"
+            rigid = {{}}
+            shape.box = {{ min = [-0.05, {}], max = [0.15, 0.15] }}
+            [[bodies]]
+            name = "floor"
+            material = "rubber"
+            rigid = {{}}
+            shape.box = {{ min = [-0.05, -0.05], max = [0.15, -{far}] }}
+            "#,
+            0.1 + far
+        ));
+        let energy = simulation.ledger().total;
+        run_to(&mut *simulation, 0.2, |_| {});
+        let (sunk, ledger) = (0.05 - simulation.bodies()[0].position[1], simulation.ledger());
+        println!("{far}: sunk by {sunk:.2e} m, {ledger:?}");
+        assert!(sunk.abs() < 2e-4, "{far}: {sunk}");
+        // Weight times the way that it sinks at most.
+        assert!(ledger.strain < 1e-2 && ledger.external_work.abs() < 1e-3, "{far}: {ledger:?}");
+        assert!((ledger.total - energy).abs() < 1e-3, "{far}: {ledger:?}");
+    }
+}
+
 /// The block of 500 kg slides by 0.6 m under mu = 0.2: area 1 m, gap 0, the slip of its centre, work mu m g s.
 #[test]
 fn contact_says_where_how_wide_and_how_far() {

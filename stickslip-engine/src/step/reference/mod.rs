@@ -635,37 +635,38 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         })
     }
 
-    /// What stress and weight do to each of these bodies in half of the next step, see [`Self::with_nodes`] [J]. All
-    /// ranks know it.
-    pub(super) fn works_of_half_a_step(&self) -> Vec<f64> {
+    /// What stress and weight do to these bodies in half of the next step, each counted as it is or the other way round:
+    /// by so much kinetic and strain energy, which are half a step apart, do not add up [J].
+    ///
+    /// ```text
+    /// sum M_I v_I(t - dt/2) . v_I(t + dt/2) / 2 = sum M_I v_I^2 / 2 + dt/2 sum v_I . (f_I + M_I g)
+    /// ```
+    /// With the strain energy the left side stays as it is where a body swings freely.
+    pub(super) fn work_of_half_a_step(&self) -> f64 {
+        if self.settings.references.is_empty() {
+            return 0.0;
+        }
         let gravity = Vector::of(self.settings.gravity.constant().unwrap_or_default());
-        // Before the first step there is no stress.
         let half = self.state.signal.map_or(0.0, |_| 0.5 * self.stable());
-        let mut works = vec![0.0; self.settings.references.len()];
-        let here = (self.settings.references.iter().zip(&self.state.references.nodes).enumerate())
-            .filter(|(_, (of, _))| !self.state.bodies[of.body].particles.is_empty());
+        let here = self.settings.references.iter().zip(&self.state.references.nodes).enumerate();
+        let here = here.filter(|(_, (of, _))| !self.state.bodies[of.body].particles.is_empty());
         let own: Vec<(usize, f64)> =
-            here.map(|(place, (_, nodes))| (place, half * nodes.power(gravity))).collect();
-        let all = match &self.among {
-            Some(among) if !works.is_empty() => among.gathered(&own).concat(),
-            _ => own,
+            here.map(|(place, (_, nodes))| (place, (half * nodes.power(gravity)).abs())).collect();
+        let mut all = match &self.among {
+            Some(among) => among.gathered(&own).concat(),
+            None => own,
         };
-        all.into_iter().for_each(|(place, work)| works[place] = work);
-        works
+        // One order of sums, however many ranks there are.
+        all.sort_by_key(|(place, _)| *place);
+        all.into_iter().map(|(_, work)| work).sum()
     }
 
     /// What a body adds up to, of its nodes what is known better there: momentum, spin and kinetic energy; and what its
-    /// part of the layer stores where it touches. Nodes have their velocities half a step before their places: the
-    /// kinetic energy is that between the velocities before and after these, so that with the strain energy it stays as
-    /// it is where a body swings freely:
-    ///
-    /// ```text
-    /// K = sum M_I v_I(t - dt/2) . v_I(t + dt/2) / 2 = sum M_I v_I^2 / 2 + dt/2 sum v_I . (f_I + M_I g)
-    /// ```
-    pub(super) fn with_nodes(&self, body: usize, mut totals: Totals, works: &[f64]) -> Totals {
+    /// part of the layer stores where it touches.
+    pub(super) fn with_nodes(&self, body: usize, mut totals: Totals) -> Totals {
         let Some(place) = self.reference_of(body) else { return totals };
         let nodes = &self.state.references.nodes[place];
-        totals.kinetic = nodes.kinetic() + works[place];
+        totals.kinetic = nodes.kinetic();
         totals.strain += self.state.references.layers.get(place).map_or(0.0, |layers| layers.energy);
         totals.momentum = nodes.momentum().space();
         let mut sums = [[0.0; 3]; 2];
@@ -939,9 +940,11 @@ fn all_obstacles<'a, T: Laned, const D: usize>(
 
 /// How two bodies touch where they do not press, in the first step or a later one.
 fn bond<T: Laned>(rules: &Rules<T>, [a, b]: [usize; 2], starts: bool) -> Bond {
-    let friction = &rules.rule(rules.number(a, b)).friction;
+    let rule = rules.rule(rules.number(a, b));
+    let friction = &rule.friction;
     Bond {
-        forms: starts && friction.adhesion > T::ZERO,
+        forms: starts && (friction.adhesion > T::ZERO || rule.law == ContactLaw::Glued),
+        is_glue: rule.law == ContactLaw::Glued,
         resists: friction.cohesion > T::ZERO || friction.viscosity > T::ZERO,
     }
 }
@@ -959,6 +962,9 @@ fn friction<T: Laned, const D: usize>(
     }
     let (rules, references) = (&settings.rules, &settings.references);
     let rule = rules.rule(rules.number(a, b));
+    if rule.law == ContactLaw::Glued {
+        return Friction::GLUE;
+    }
     let double = rule.friction.double();
     let own = references[touch.side].memory;
     let usual = match touch.met {

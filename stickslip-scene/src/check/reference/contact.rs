@@ -11,8 +11,8 @@ type Refusal = (&'static str, fn(&ContactRule) -> Option<String>, &'static str);
 const OF_RULE: &[Refusal] = &[
     (
         "law",
-        |rule| (rule.law != ContactLaw::Surface).then(|| law(rule)),
-        "\"surface\", the default, or \"none\"",
+        |rule| (!matches!(rule.law, ContactLaw::Surface | ContactLaw::Glued)).then(|| law(rule)),
+        "\"surface\", the default, \"none\", or \"glued\" to a rigid body",
     ),
     ("restitution", |rule| above_zero(rule.restitution), "0, the default"),
     ("overlap", |rule| rule.press.map(|_| "\"press\"".to_string()), "\"kept\", the default"),
@@ -97,8 +97,12 @@ fn refused(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Pro
     if rule.law == ContactLaw::None {
         return None;
     }
-    let (key, found, allowed) =
-        OF_RULE.iter().find_map(|(key, found, allowed)| Some((key, found(rule)?, allowed)))?;
+    // Glue makes one body of two on the common grid, which layers between two grids are not.
+    let joins = rule.law == ContactLaw::Glued && !scene.bodies[b].is_rigid();
+    let (key, found, allowed) = OF_RULE.iter().find_map(|(key, found, allowed)| {
+        let found = if joins && *key == "law" { Some(law(rule)) } else { found(rule) };
+        Some((key, found?, allowed))
+    })?;
     let [name, other] = [a, b].map(|body| &scene.bodies[body].name);
     let grid = if scene.bodies[b].is_rigid() { format!("`{name}`") } else { "both".to_string() };
     Some(Problem {

@@ -117,7 +117,11 @@ impl Choice for ContactLaw {
         ),
         ("traction", ContactLaw::Traction, "When the traction between them is compressive (2001)."),
         ("kinematic", ContactLaw::Kinematic, "When they approach (2000)."),
-        ("glued", ContactLaw::Glued, "Always and in every direction: one velocity for both."),
+        (
+            "glued",
+            ContactLaw::Glued,
+            "Always and in every direction: one velocity for both; of a body on a grid of its own, a layer that holds its points.",
+        ),
         ("none", ContactLaw::None, "Never."),
     ];
 }

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct EnergyBalance {
     first: Option<Ledger>,
-    /// Energy gained since the start, lost if negative [J].
+    /// Energy gained since the start, lost if negative, beyond what kinetic and strain energy differ by for being half a
+    /// step apart [J].
     pub drift: f64,
     /// What it is held against [J].
     pub scale: f64,
@@ -29,7 +30,8 @@ impl EnergyBalance {
     /// The drift now.
     pub(super) fn update(&mut self, now: &Ledger, least: f64) {
         self.weigh(now, least);
-        self.drift = self.first.as_ref().map_or(0.0, |first| now.total - first.total);
+        let gained = self.first.as_ref().map_or(0.0, |first| now.total - first.total);
+        self.drift = (gained.abs() - now.half_step).max(0.0).copysign(gained);
     }
 
     /// Drift over scale [-].

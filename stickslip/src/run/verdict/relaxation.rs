@@ -1,7 +1,7 @@
 //! Dynamic relaxation that came to its end before the bodies were at rest.
 
 use super::{Check, CheckInputs, EARLY, Finding};
-use crate::scene::{HealthCheck, Scene};
+use crate::scene::{HealthCheck, Interior, Scene};
 
 /// Looks whether the bodies are at rest when the run ends.
 pub(super) struct RelaxationCheck;
@@ -11,8 +11,18 @@ impl Check for RelaxationCheck {
         HealthCheck::Relaxation
     }
 
-    fn advice(&self, _: &Scene) -> &'static str {
-        "try a later time.end, a larger time.relax.residual; what nothing holds never comes to rest"
+    fn advice(&self, scene: &Scene) -> &'static str {
+        let mut bodies = 0..scene.bodies.len();
+        // Particles that cross cells make forces of their own.
+        match bodies.any(|i| !scene.bodies[i].is_rigid() && scene.interior(i) == Interior::Grid) {
+            true => {
+                "try interior = \"reference\" for bodies that stay whole, whose residual has no noise; a later time.end, \
+                 a larger time.relax.residual; what nothing holds never comes to rest"
+            }
+            false => {
+                "try a later time.end, a larger time.relax.residual; what nothing holds never comes to rest"
+            }
+        }
     }
 
     fn look(&mut self, look: &CheckInputs) -> Vec<Finding> {
