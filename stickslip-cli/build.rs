@@ -6,7 +6,8 @@ use std::process::{Command, Stdio};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // A profile with debug information is for whoever looks for names, and Windows has them in files beside the program.
+    // A profile with debug information is for whoever looks for names, and Windows has them in files beside the
+    // program.
     let is_release = of_cargo("PROFILE") == "release" && of_cargo("DEBUG") == "false";
     if is_release && of_cargo("CARGO_CFG_TARGET_ENV") != "msvc" {
         // As a compiler takes it that links, and as a linker does.

@@ -52,9 +52,9 @@ const KNOWN: &[Known] = &[
         benchmark: "M6",
         metrics: &["ratio/mu, aligned", "ratio/mu, rotated"],
         misses: &[Miss { cells: 12.0, off: 0.088 }, Miss { cells: 24.0, off: 0.091 }],
-        why: "The faces land flat, and the pressure of their layers swings between nothing and twice its mean. Friction \
-with its memory follows with a delay: 1.057 with 12 cells, 1.059 with 24. Without memory it is 0.91: whenever a point \
-parts, its layer loses the shear that it stored.",
+        why: "The faces land flat, and the pressure of their layers swings between nothing and twice its mean. \
+Friction with its memory follows with a delay: 1.057 with 12 cells, 1.059 with 24. Without memory it is 0.91: whenever \
+a point parts, its layer loses the shear that it stored.",
     },
     Known {
         benchmark: "corners",
@@ -72,8 +72,8 @@ parts, its layer loses the shear that it stored.",
         benchmark: "die",
         metrics: &["force of the piston off, aligned", "force of the piston off, rotated"],
         misses: &[Miss { cells: 16.0, off: 0.147 }, Miss { cells: 32.0, off: 0.079 }],
-        why: "Faces overlap, and the piston presses the block by so much less: its force is 17, 10 and 5 % low with 8, 16 \
-and 32 cells.",
+        why: "Faces overlap, and the piston presses the block by so much less: its force is 17, 10 and 5 % low with 8, \
+16 and 32 cells.",
     },
     Known {
         benchmark: "die",
@@ -92,29 +92,29 @@ and 32 cells.",
         benchmark: "B5",
         metrics: &["energy left over, v/c = 0.002", "energy left over, v/c = 0.02"],
         misses: &[Miss { cells: 50.0, off: 0.0033 }],
-        why: "What a layer stores in the step in which the faces land comes from nowhere: 0.0044, 0.0022, 0.0011 with 25, \
-50, 100 cells at 0.002 c.",
+        why: "What a layer stores in the step in which the faces land comes from nowhere: 0.0044, 0.0022, 0.0011 with \
+25, 50, 100 cells at 0.002 c.",
     },
     Known {
         benchmark: "B9",
         metrics: &["energy left over"],
         misses: &[Miss { cells: 40.0, off: 0.021 }, Miss { cells: 80.0, off: 0.016 }],
-        why: "The law, hypoelastic, has no strain energy of its own: 1.3 and 1.1 % at 1/40 and 1/80, by neo_hookean 0.2 \
-% at 1/40.",
+        why: "The law, hypoelastic, has no strain energy of its own: 1.3 and 1.1 % at 1/40 and 1/80, by neo_hookean \
+0.2 % at 1/40.",
     },
     Known {
         benchmark: "B29",
         metrics: &["base stress over weight"],
         misses: &[Miss { cells: 4.0, off: 0.052 }],
-        why: "Nothing damps the stack, and the quick tier averages a few of its swings: 1.034; over 1000 transits 1.009, \
-with 8 cells 1.004.",
+        why: "Nothing damps the stack, and the quick tier averages a few of its swings: 1.034; over 1000 transits \
+1.009, with 8 cells 1.004.",
     },
     Known {
         benchmark: "B21-large",
         metrics: &["drop of the centre"],
         misses: &[Miss { cells: 4.0, off: 0.064 }],
-        why: "The layer that glues the root to the clamp yields like a sheet of a quarter of a cell: 1.042 with H/4, 1.019 \
-with H/8.",
+        why: "The layer that glues the root to the clamp yields like a sheet of a quarter of a cell: 1.042 with H/4, \
+1.019 with H/8.",
     },
     Known {
         benchmark: "punch",
@@ -124,8 +124,8 @@ with H/8.",
             Miss { cells: 16.0, off: 0.18 },
             Miss { cells: 32.0, off: 0.092 },
         ],
-        why: "Each particle keeps its own volume, and the block locks a little: 1.26, 1.12, 1.06 with 8, 16, 32 cells on \
-the height.",
+        why: "Each particle keeps its own volume, and the block locks a little: 1.26, 1.12, 1.06 with 8, 16, 32 cells \
+on the height.",
     },
     Known {
         benchmark: "cook",

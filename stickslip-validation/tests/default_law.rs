@@ -1,5 +1,5 @@
-//! The law and the scheme that scenes on the common grid get which name none, bodies on grids of their own, and glue, held
-//! to the targets that they reach.
+//! The law and the scheme that scenes on the common grid get which name none, bodies on grids of their own, and glue,
+//! held to the targets that they reach.
 //!
 //! # Source
 //! The benchmarks themselves: each states its source, its target and why it is that.

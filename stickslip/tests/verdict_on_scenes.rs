@@ -6,9 +6,9 @@
 //! - A strip of rubber of four cells' width and 20 cells' length that is pulled to 1.6 of its length, slowly (book,
 //!   chapter 17), by `gimp`.
 //! - The scenes of the folder `sound`: rigid bodies at rest on friction and on each other, a block at rest by each
-//!   bond, a gripper that closes from a first touch on, flat bars that strike each other; on grids of their own blocks at
-//!   rest without gravity, on a slope and on a face of the domain, and one that a pressure strikes within a step. Their
-//!   residuals are round-off, or a contact that is not resolved at first and is later.
+//!   bond, a gripper that closes from a first touch on, flat bars that strike each other; on grids of their own blocks
+//!   at rest without gravity, on a slope and on a face of the domain, and one that a pressure strikes within a step.
+//!   Their residuals are round-off, or a contact that is not resolved at first and is later.
 //! - Two halves of one body that meet, on the common grid and on a grid of its own.
 //! - A disk of rubber with R/5 that is thrown against a rigid floor with 0.7 of its wave speed sqrt(E/rho), mu = 0.3,
 //!   by each basis.

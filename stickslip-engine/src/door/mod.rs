@@ -328,8 +328,8 @@ pub struct Ledger {
     /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J];
     /// constant in an exact solution.
     pub total: f64,
-    /// By how much, either way, kinetic and strain energy of bodies on grids of their own do not add up, for they are half
-    /// a step apart [J].
+    /// By how much, either way, kinetic and strain energy of bodies on grids of their own do not add up, for they are
+    /// half a step apart [J].
     #[serde(default)]
     pub half_step: f64,
     /// Linear momentum [kg m/s].
@@ -903,8 +903,8 @@ impl StepError {
                 "it strained far in one step: try a smaller time.courant; look at the last frame for what went wrong first"
             }
             StepError::Shrunk { .. } => {
-                "1 + thermal_expansion times temperature must stay above zero: see which unit each of them has; a load's \
-                 `temperature` is the change since the start"
+                "1 + thermal_expansion times temperature must stay above zero: see which unit each of them has; a \
+                 load's `temperature` is the change since the start"
             }
             StepError::Pierced { .. } => {
                 "bodies that meet faster than their waves are not stopped by the layer between them, and would pass \

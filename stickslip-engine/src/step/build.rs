@@ -53,8 +53,8 @@ pub fn build_on(scene: &Scene, path: ParticleLoop) -> Result<Box<dyn Simulation>
     Ok(build_for(scene, path, Keeping::All)?)
 }
 
-/// The simulation of a scene in double precision by these kernels of the plane and of space, one particle at a time: for
-/// oracles.
+/// The simulation of a scene in double precision by these kernels of the plane and of space, one particle at a time:
+/// for oracles.
 ///
 /// # Errors
 /// What [`check::problems`] finds.

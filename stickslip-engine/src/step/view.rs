@@ -140,15 +140,16 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     pub(super) fn totals(&self) -> Arc<ByBody<Totals>> {
         let mut known = self.workspace.totals.lock().unwrap_or_else(PoisonError::into_inner);
         let (bodies, kernels) = (self.shown(), self.kernels);
+        let sum = |range: Range<usize>| {
+            (range.start, self.with_nodes(range.start, bodies[range.start].totals(kernels)))
+        };
         known
-            .get_or_insert_with(|| {
-                let sum = |range: Range<usize>| {
-                    let totals = bodies[range.start].totals(kernels);
-                    (range.start, self.with_nodes(range.start, totals))
-                };
-                let Some(among) = &self.among else { return by_parts(bodies.len(), 1, sum).into() };
-                let all = among.totals(bodies, kernels);
-                all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals))).collect()
+            .get_or_insert_with(|| match &self.among {
+                Some(among) => {
+                    let all = among.totals(bodies, kernels);
+                    all.iter().map(|(body, totals)| (*body, self.with_nodes(*body, *totals))).collect()
+                }
+                None => by_parts(bodies.len(), 1, sum).into(),
             })
             .clone()
     }

@@ -22,8 +22,8 @@ pub enum Partner {
 const MARGIN: f64 = 0.75;
 /// How near points of two surfaces are where one comes to touch the other, in cells of the coarser.
 const NEAR: f64 = 1.0;
-/// How far a body may move before its neighbours are sought anew, in cells: points of two surfaces lie half as far apart
-/// as neighbours do.
+/// How far a body may move before its neighbours are sought anew, in cells: points of two surfaces lie half as far
+/// apart as neighbours do.
 const SKIN: f64 = 0.25;
 /// How near points of two surfaces are where they are neighbours, in cells: after both have moved as well.
 const LISTED: f64 = NEAR + 2.0 * SKIN;
@@ -39,7 +39,8 @@ const CERTAIN: f64 = 0.6;
 /// How far apart surfaces are at most that touch without pressing, in cells: as on the common grid.
 const BOND: f64 = 0.01;
 
-/// How far apart surfaces are at most that are glued at the start, in cells: less than a point of a slanted face beside.
+/// How far apart surfaces are at most that are glued at the start, in cells: less than a point of a slanted face
+/// beside.
 const GLUE: f64 = 0.1;
 
 /// How surfaces that do not press touch by their rule.

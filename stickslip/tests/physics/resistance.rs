@@ -199,8 +199,8 @@ fn a_block_on_a_grid_of_its_own_resists() {
     assert!(leaves > speed(0.51) && leaves < speed(0.35), "{leaves}");
 }
 
-/// A block of ten cells on a grid of its own, glued between a ceiling and a floor that lie against it, or so far off [m]:
-/// it hangs by its weight, m g H/(2 M) lower in its middle at most, and nothing pulls it to them.
+/// A block of ten cells on a grid of its own, glued between a ceiling and a floor that lie against it, or so far off
+/// [m]: it hangs by its weight, m g H/(2 M) lower in its middle at most, and nothing pulls it to them.
 #[test]
 fn glue_holds_a_block_as_it_lies() {
     for far in [0.0, 2e-4] {

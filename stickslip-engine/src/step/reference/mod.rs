@@ -173,8 +173,8 @@ const USUAL: f64 = 0.4;
 /// What of the step that the layer of contact allows is taken.
 const SAFE: f64 = 0.8;
 
-/// What of a cell a wave may cross in a step of a body whose surface is pressed on a rigid one everywhere, by a bound of
-/// its fastest motion (Gershgorin's theorem):
+/// What of a cell a wave may cross in a step of a body whose surface is pressed on a rigid one everywhere, by a bound
+/// of its fastest motion (Gershgorin's theorem):
 ///
 /// ```text
 /// dt = 2/w,   w^2 <= w_i^2 + max_I sum_s k A_s |N_I(X_s)| / M_I,   w_i = 2 c / (0.9 h)
@@ -538,8 +538,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         found
     }
 
-    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave in
-    /// undeformed lengths of each. Those that touch others, or did so just now, have shorter steps.
+    /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave
+    /// in undeformed lengths of each. Those that touch others, or did so just now, have shorter steps.
     fn fastest_reference(&self, found: &[Found<T>]) -> f64 {
         let courant = self.settings.time.courant;
         // Nothing is asked of the way to rest: its steps are the longest that are stable.
@@ -635,8 +635,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         })
     }
 
-    /// What stress and weight do to these bodies in half of the next step, each counted as it is or the other way round:
-    /// by so much kinetic and strain energy, which are half a step apart, do not add up [J].
+    /// What stress and weight do to these bodies in half of the next step, each counted as it is or the other way
+    /// round: by so much kinetic and strain energy, which are half a step apart, do not add up [J].
     ///
     /// ```text
     /// sum M_I v_I(t - dt/2) . v_I(t + dt/2) / 2 = sum M_I v_I^2 / 2 + dt/2 sum v_I . (f_I + M_I g)

@@ -120,7 +120,8 @@ impl Choice for ContactLaw {
         (
             "glued",
             ContactLaw::Glued,
-            "Always and in every direction: one velocity for both; of a body on a grid of its own, a layer that holds its points.",
+            "Always and in every direction: one velocity for both; of a body on a grid of its own, a layer \
+             that holds its points.",
         ),
         ("none", ContactLaw::None, "Never."),
     ];

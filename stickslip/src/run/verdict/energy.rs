@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct EnergyBalance {
     first: Option<Ledger>,
-    /// Energy gained since the start, lost if negative, beyond what kinetic and strain energy differ by for being half a
-    /// step apart [J].
+    /// Energy gained since the start, lost if negative, beyond what kinetic and strain energy differ by for being half
+    /// a step apart [J].
     pub drift: f64,
     /// What it is held against [J].
     pub scale: f64,

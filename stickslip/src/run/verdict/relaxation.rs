@@ -16,8 +16,8 @@ impl Check for RelaxationCheck {
         // Particles that cross cells make forces of their own.
         match bodies.any(|i| !scene.bodies[i].is_rigid() && scene.interior(i) == Interior::Grid) {
             true => {
-                "try interior = \"reference\" for bodies that stay whole, whose residual has no noise; a later time.end, \
-                 a larger time.relax.residual; what nothing holds never comes to rest"
+                "try interior = \"reference\" for bodies that stay whole, whose residual has no noise; a later \
+                 time.end, a larger time.relax.residual; what nothing holds never comes to rest"
             }
             false => {
                 "try a later time.end, a larger time.relax.residual; what nothing holds never comes to rest"
