@@ -84,13 +84,13 @@ def use(driver, address, screenshot=None):
     told["colorbar"] = find("colorbar").text
     driver.save_screenshot(screenshot) if screenshot else None
 
-    # A click where the middle of the particles is seen.
+    # A click well inside the particles: beside them, half a pixel decides whether one is within reach.
     x, y = driver.execute_script("""
-        const { list, places } = stickslip.cloud;
         const canvas = document.getElementById('canvas');
+        const around = [[0, 0], [-9, 0], [9, 0], [0, -9], [0, 9]];
         for (let dy = 0.2; dy < 0.9; dy += 0.02) for (let dx = 0.2; dx < 0.9; dx += 0.02) {
-            const at = [dx * canvas.clientWidth, dy * canvas.clientHeight];
-            if (stickslip.pickAt(...at)) return at;
+            const [x, y] = [Math.round(dx * canvas.clientWidth), Math.round(dy * canvas.clientHeight)];
+            if (around.every(([right, down]) => stickslip.pickAt(x + right, y + down))) return [x, y];
         }
         return [0, 0];
     """)
