@@ -58,10 +58,14 @@ impl Fastest {
     }
 }
 
-/// The particle with the fastest [`signal`] of all; none where there are none.
-pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> Option<Fastest> {
+/// The particle with the fastest [`signal`] of all, in cells of the common grid: those of a body on a finer grid of its
+/// own are so much faster. None where there are no particles.
+pub fn fastest_signal<T: Real, const D: usize>(
+    bodies: &[Body<T, D>],
+    finer: &(dyn Fn(usize) -> f64 + Sync),
+) -> Option<Fastest> {
     let of_body = |i: usize| {
-        let body = &bodies[i];
+        let (body, finer) = (&bodies[i], finer(i));
         let of_particle = |p: usize| {
             // SAFETY: the particles are borrowed for reading.
             let history = unsafe { body.particles.view().history_of(p) };
@@ -69,7 +73,7 @@ pub fn fastest_signal<T: Real, const D: usize>(bodies: &[Body<T, D>]) -> Option<
             if let Some(natural) = body.particles.natural(p, body.matter.expansion) {
                 particle.deformation = natural.elastic(&particle.deformation, T::ONE).0;
             }
-            signal(body, &particle, &history).f64()
+            signal(body, &particle, &history).f64() * finer
         };
         Fastest::in_body(body.particles.numbers(), i, of_particle)
     };

@@ -184,8 +184,9 @@ impl LoadPoints {
                 let modulus = material.law.wave_modulus_at_rest(scene.dimension.thickness());
                 let depth = if load.part.on == Extent::Volume { 2 } else { 1 };
                 let stiffest = RIGID / scene.time.courant.powi(2);
-                stiffness = stiffest * modulus / scene.discretization.cell.powi(depth);
-                inset = 0.5 * scene.discretization.cell / stiffest;
+                let cell = scene.cell(&scene.bodies[load.body]);
+                stiffness = stiffest * modulus / cell.powi(depth);
+                inset = 0.5 * cell / stiffest;
             } else {
                 stiffness = support.stiffness.unwrap_or(0.0) / measure;
             }

@@ -309,11 +309,13 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
             |is: &dyn Fn(&Body<T, D>) -> bool| (0..bodies.len()).filter(|&i| is(&bodies[i])).collect();
         let (rigid, together) =
             (all_that(&|body| body.is_rigid()), all_that(&|body| over_arrays(body).is_some()));
-        let averages_volume = bodies.iter().any(|body| body.averages_volume());
+        let averages = |i: usize| bodies[i].averages_volume() && !is_reference(scene, i);
+        let averages_volume = (0..bodies.len()).any(averages);
+        let begins_stressed = scene.bodies.iter().any(|body| body.stress.is_some());
         let loads = loads(scene, (&bodies, &all_filled), kinds.is_some());
         let rules = Rules::new(scene);
         let common = CommonPartner::of_scene::<D>(scene, &rules);
-        Ok(Engine {
+        let mut engine = Engine {
             settings: Settings {
                 lattice: Lattice {
                     half_side: half_side.map(T::of),
@@ -344,6 +346,7 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
                 tables,
                 together,
                 averages_volume,
+                begins_stressed,
                 time: scene.time.clone(),
                 path,
             },
@@ -385,7 +388,11 @@ impl<T: Compiled<D>, const D: usize> Engine<T, D> {
             kinds,
             watch: Stopwatch::default(),
             kernels,
-        })
+        };
+        if begins_stressed {
+            engine.begin_stressed();
+        }
+        Ok(engine)
     }
 }
 

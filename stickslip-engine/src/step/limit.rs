@@ -17,7 +17,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     /// Longest stable step now, courant h / max(c + |v_p|): the speed is the fastest *signal* ([`crate::clock`]) [s].
     pub(super) fn stable(&self) -> f64 {
         let fastest = || {
-            let here = fastest_signal(self.shown()).map_or(0.0, |fastest| fastest.speed);
+            let here =
+                fastest_signal(self.shown(), &|body| self.finer(body)).map_or(0.0, |fastest| fastest.speed);
             self.among.as_ref().map_or(here, |among| largest(&*among.ranks, here))
         };
         let signal = self.state.signal.unwrap_or_else(fastest);
@@ -38,11 +39,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 
     /// The particle with the fastest signal [m/s] of all ranks.
     fn fastest_of_all(&self) -> Option<(f64, StepLimit)> {
-        let here = fastest_signal(self.shown()).map(|Fastest { body, particle, speed, .. }| {
-            let particle = self.state.bodies[body].particles.get(particle);
-            let position = particle.position.space();
-            (speed, StepLimit { body, particle: Some(particle.number), position })
-        });
+        let here = fastest_signal(self.shown(), &|body| self.finer(body)).map(
+            |Fastest { body, particle, speed, .. }| {
+                let particle = self.state.bodies[body].particles.get(particle);
+                let position = particle.position.space();
+                (speed, StepLimit { body, particle: Some(particle.number), position })
+            },
+        );
         let Some(among) = &self.among else { return here };
         let first = |(_, limit): &(f64, StepLimit)| (limit.body, limit.particle);
         let faster = |a: &(f64, StepLimit), b: &(f64, StepLimit)| {

@@ -171,11 +171,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.pull_springs(dt, None); //                           between parts of bodies
         self.impose_boundary_conditions(); //                     once more
         self.contact_on_integrated(dt); //                        v~, and walls
+        self.heat(dt)?; //                                        temperatures at the end of the step
         self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.keep_velocities(); //                                v~, for dv
         self.damp(dt); //                                         of v~ for dv
         self.average_dilatation(dt); //                           of nearly incompressible bodies
-        self.heat(dt)?; //                                        temperatures at the end of the step
         self.update_particles(dt)?; //                            G2P: v_p += dv, F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
         self.account_mechanism(dt); //                            forces and works of joints
@@ -209,12 +209,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         self.update_particle_velocities(dt)?; //                  G2P: v_p += dv; P2G: p
         self.interpolate_again(); //                              v = p / m, with m as before
         self.impose_boundary_conditions(); //                     and again
+        self.heat(dt)?; //                                        temperatures at the end of the step
         self.move_references(dt)?; //                             x += v dt, F, sigma; what they rub, by v of all
         self.account(dt, Interpolated::Twice); //                 the same, while u^1 is at the nodes
         self.hold_supported_nodes(); //                           v~, where supports act
         self.contact_on_straining(dt); //                         v~, and walls
         self.average_dilatation(dt); //                           of nearly incompressible bodies
-        self.heat(dt)?; //                                        temperatures at the end of the step
         self.update_stress_and_positions(dt)?; //                 G2P: F, sigma, x += v~ dt
         self.move_rigid_bodies(dt)?; //                           as prescribed, free ones by their velocities
         self.account_mechanism(dt); //                            forces and works of joints

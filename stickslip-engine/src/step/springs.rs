@@ -12,7 +12,7 @@
 
 use super::Engine;
 use super::loads::{NOWHERE, find, mirror};
-use super::reference::center_of;
+use super::reference::{center_of, feel, pull_of, push};
 use crate::exact::ExactSum;
 use crate::grid::{node_at, nodes_per_block};
 use crate::lanes::Laned;
@@ -35,11 +35,11 @@ pub struct SpringRoom<T, const D: usize> {
 }
 
 /// Where a spring is.
-pub(super) struct Line {
+struct Line {
     /// Of its two parts [m].
-    pub centers: [[f64; 3]; 2],
+    centers: [[f64; 3]; 2],
     /// From the second to the first.
-    pub direction: Vector<f64, 3>,
+    direction: Vector<f64, 3>,
 }
 
 /// What a spring does in a step.
@@ -80,11 +80,6 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         room.springs.clear();
         let of_springs = centers.into_iter().zip(directions).zip(room.nodes.as_chunks().0).enumerate();
         for (number, ((centers, direction), nodes)) in of_springs {
-            let places = self.settings.springs[number].ends.each_ref().map(|end| self.reference_of(end.body));
-            if places.iter().any(Option::is_some) {
-                room.springs.push(self.pull_nodes(number, places, dt));
-                continue;
-            }
             let line = centers.zip(direction).map(|(centers, direction)| Line { centers, direction });
             let step = line.map(|line| self.pull(number, (dt, ahead), (line, nodes)));
             room.springs.push(step.unwrap_or_default());
@@ -102,7 +97,10 @@ impl<T: Laned, const D: usize> Engine<T, D> {
     ) -> SpringStep {
         let spring = &self.settings.springs[number];
         let (mut rate, mut yields, mut driven) = (0.0, 0.0, 0.0);
-        // Of the nodes: of each that several ranks have, one.
+        let own = spring.ends.each_ref().map(|end| self.reference_of(end.body));
+        // What ends on grids of their own feel, which all ranks know.
+        let mut pulls: [Vec<Vector<f64, D>>; 2] = Default::default();
+        // Of the nodes of the common grid: of each that several ranks have, one.
         let mut sums = [0; 3].map(|_| ExactSum::default());
         for side in 0..2 {
             let end = &spring.ends[side];
@@ -118,6 +116,13 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
                 continue;
             }
+            if let Some(place) = own[side] {
+                let nodes = &self.state.references.nodes[place];
+                pulls[side] = pull_of(end, along, nodes);
+                let [of_rate, of_yields] = feel(nodes, &pulls[side]);
+                (rate, yields) = (rate + of_rate, yields + of_yields);
+                continue;
+            }
             let [of_rate, of_gone, of_yields] = &mut sums;
             for (index, pull) in &nodes[side] {
                 let (_, block) = self.workspace.active.slots[*index as usize / nodes_per_block(D)];
@@ -129,7 +134,11 @@ impl<T: Laned, const D: usize> Engine<T, D> {
                 }
             }
         }
-        self.add_up(&mut sums);
+        let is_on_common_grid =
+            |side: usize| own[side].is_none() && self.state.bodies[spring.ends[side].body].motion.is_none();
+        if (0..2).any(is_on_common_grid) {
+            self.add_up(&mut sums);
+        }
         let [of_nodes, gone, of_all] = sums.each_ref().map(ExactSum::value);
         (rate, yields) = (rate + of_nodes, yields + of_all);
         let softer = 1.0 / (1.0 + dt * (dt * spring.stiffness + spring.dashpot) * yields);
@@ -138,6 +147,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         for (side, nodes) in nodes.iter().enumerate() {
             let (body, impulse) = (spring.ends[side].body, along(direction, side) * (dt * force));
             self.workspace.mechanism.push(&mut self.state.bodies, (body, dt), (centers[side], impulse.0));
+            if let Some(place) = own[side] {
+                push(&mut self.state.references.nodes[place], &pulls[side], dt * force);
+            }
             for (index, pull) in nodes {
                 let node = &mut self.workspace.field.nodes[*index as usize];
                 node.velocity += *pull * (T::of(dt * force) / node.mass);
@@ -165,7 +177,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let mut found: Vec<([u32; 2], [i32; 3], [f64; 3])> = Vec::new();
         for (e, end) in self.ends().enumerate() {
             let body = &self.state.bodies[end.body];
-            let Some(direction) = directions[e / 2].filter(|_| !body.is_rigid()) else { continue };
+            let is_elsewhere = body.is_rigid() || self.reference_of(end.body).is_some();
+            let Some(direction) = directions[e / 2].filter(|_| !is_elsewhere) else { continue };
             let along = Vector::<T, D>::of(along(direction, e % 2).0);
             for (point, number) in end.points.iter().zip(0..) {
                 let place = match places[end.body][point.particle as usize] {
@@ -307,12 +320,12 @@ impl<T: Laned, const D: usize> Engine<T, D> {
 }
 
 /// Direction from the second part of a spring to the first.
-pub(super) fn direction(centers: &Option<[[f64; 3]; 2]>) -> Option<Vector<f64, 3>> {
+fn direction(centers: &Option<[[f64; 3]; 2]>) -> Option<Vector<f64, 3>> {
     centers.and_then(|[a, b]| (Vector(a) - Vector(b)).direction())
 }
 
 /// Where a spring pushes a part in its direction.
-pub(super) fn along(direction: Vector<f64, 3>, side: usize) -> Vector<f64, 3> {
+fn along(direction: Vector<f64, 3>, side: usize) -> Vector<f64, 3> {
     direction * if side == 0 { 1.0 } else { -1.0 }
 }
 

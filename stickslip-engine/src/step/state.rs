@@ -72,6 +72,8 @@ pub struct Settings<T, const D: usize> {
     pub together: Vec<usize>,
     /// Whether any body's material wants means of dilatation rate and pressure.
     pub averages_volume: bool,
+    /// Whether some bodies begin with a stress.
+    pub begins_stressed: bool,
     pub time: Time,
     pub path: ParticleLoop,
 }

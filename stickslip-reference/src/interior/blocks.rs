@@ -90,18 +90,32 @@ impl<const D: usize> Rows<D> {
 pub(super) struct Elastic<V> {
     law: NeoHookean<V>,
     per_density: V,
+    /// Whether particles share the dilatation of their cell, in space.
+    pub averages: bool,
 }
 
 impl<V: Lanes> Elastic<V> {
     #[inline(always)]
-    pub fn new(law: &NeoHookean<V::Real>, density: V::Real) -> Self {
-        Elastic { law: law.map(V::splat), per_density: V::splat(V::Real::ONE / density) }
+    pub fn new((law, averages): (&NeoHookean<V::Real>, bool), density: V::Real) -> Self {
+        Elastic { law: law.map(V::splat), per_density: V::splat(V::Real::ONE / density), averages }
+    }
+
+    /// K/2 (J - 1/J) [Pa]
+    #[inline(always)]
+    fn pressure(&self, jacobian: V) -> V {
+        V::HALF * self.law.elastic.bulk_modulus * (jacobian - V::ONE / jacobian)
     }
 
     /// -V P = -V sigma J F^-T, zero where the volume is, and whether all are sound; in the plane F has a one beyond.
-    /// `fastest` becomes the larger of itself and the squares of waves' speeds in undeformed lengths [m^2/s^2].
+    /// With a mean Jm of J over the cell the pressure is that of Jm, which is all that the law takes from it:
+    /// W = U(Jm) + G/2 (J^(-2/3) tr(F F^T) - 3). `fastest` becomes the larger of itself and the squares of waves' speeds in undeformed lengths [m^2/s^2].
     #[inline(always)]
-    pub fn pulls<const D: usize>(&self, of: Matrix<V>, volume: V, fastest: &mut V) -> (Matrix<V>, bool) {
+    pub fn pulls<const D: usize>(
+        &self,
+        of: Matrix<V>,
+        (volume, mean): (V, Option<V>),
+        fastest: &mut V,
+    ) -> (Matrix<V>, bool) {
         let all = (1 << V::COUNT) - 1;
         let absent = V::ZERO.at_least(volume) & all;
         let mut deformation = of;
@@ -124,7 +138,13 @@ impl<V: Lanes> Elastic<V> {
             stress: Symmetric::ZERO,
             dt: V::ZERO,
         };
-        let stress = self.law.respond(&motion, &[]).stress;
+        let mut stress = self.law.respond(&motion, &[]).stress;
+        if let Some(mean) = mean {
+            let more = self.pressure(mean) - self.pressure(jacobian);
+            for i in 0..D {
+                stress.0[i] += more;
+            }
+        }
         let modulus = self.law.wave_modulus(&deformation, jacobian, &[]);
         let inverse = V::ONE / jacobian;
         let mut speed = modulus * self.per_density * (shrinking::<V, D>(&cofactor) * (inverse * inverse));
@@ -169,7 +189,7 @@ impl<V: Lanes<Real: Laned>, const D: usize> Whole<V, D> {
     const SIDES: usize = if D == 3 { 2 } else { 1 };
 
     #[inline(always)]
-    pub fn new(form: &Form<D>, law: &NeoHookean<V::Real>, density: V::Real) -> Self {
+    pub fn new(form: &Form<D>, law: (&NeoHookean<V::Real>, bool), density: V::Real) -> Self {
         let along = ALONG.map(|at| Axis::in_cell(0, at));
         Whole {
             value: along.map(|axis| axis.value.map(V::of)),
@@ -193,10 +213,19 @@ impl<V: Lanes<Real: Laned>, const D: usize> Whole<V, D> {
         for first in (0..block.count as usize).step_by(V::COUNT) {
             let node = block.node as usize + first;
             let mut own = self.slopes(places, (node, offsets));
+            // SAFETY: there are as many as any machine has lanes.
+            let volume = |p: usize| unsafe { V::load(volumes[p].0[first..].as_ptr()) };
+            let mut mean = None;
+            if D == 3 && self.elastic.averages {
+                let [mut sum, mut all] = [V::ZERO; 2];
+                for p in 0..Self::COUNT {
+                    sum = determinant(&Matrix::from_fn(|i, a| own[i][a][p])).times_plus(volume(p), sum);
+                    all += volume(p);
+                }
+                mean = Some(V::select(V::ZERO.at_least(all), V::ONE, sum / all));
+            }
             for p in 0..Self::COUNT {
-                // SAFETY: there are as many as any machine has lanes.
-                let volume = unsafe { V::load(volumes[p].0[first..].as_ptr()) };
-                sound &= self.respond(&mut own, p, volume, fastest);
+                sound &= self.respond(&mut own, p, (volume(p), mean), fastest);
             }
             self.scatter(&own, forces, (node, offsets));
         }
@@ -257,9 +286,9 @@ impl<V: Lanes<Real: Laned>, const D: usize> Whole<V, D> {
 
     /// Turns F of a particle of each cell into -V P, zero where the volume is, and tells whether all are sound.
     #[inline(always)]
-    fn respond(&self, own: &mut AtSites<V>, p: usize, volume: V, fastest: &mut V) -> bool {
+    fn respond(&self, own: &mut AtSites<V>, p: usize, by: (V, Option<V>), fastest: &mut V) -> bool {
         let deformation = Matrix::from_fn(|i, a| own[i][a][p]);
-        let (pulls, sound) = self.elastic.pulls::<D>(deformation, volume, fastest);
+        let (pulls, sound) = self.elastic.pulls::<D>(deformation, by, fastest);
         for i in 0..D {
             for a in 0..D {
                 own[i][a][p] = pulls.0[i][a];
@@ -321,6 +350,14 @@ fn dot<V: Number>(factors: &[V; WIDTH], x: &[V; WIDTH]) -> V {
 #[inline(always)]
 fn pair<V: Number>(factors: &[V; 2], of: [V; 2]) -> V {
     factors[1].times_plus(of[1], factors[0] * of[0])
+}
+
+/// det F in space.
+#[inline(always)]
+pub(super) fn determinant<V: Number>(f: &Matrix<V>) -> V {
+    let minor = |j: usize, k: usize| f.0[1][j].times_plus(f.0[2][k], -(f.0[1][k] * f.0[2][j]));
+    let sum = f.0[0][1].times_plus(minor(2, 0), f.0[0][0] * minor(1, 2));
+    f.0[0][2].times_plus(minor(0, 1), sum)
 }
 
 /// J F^-T; in the plane F has ones beyond.

@@ -8,16 +8,19 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::Interior;
-use super::blocks::{Elastic, Rows, Whole};
-use crate::cells::Table;
+use super::blocks::{Elastic, Rows, Whole, determinant};
+use crate::cells::{SITES, Table};
 use std::mem::MaybeUninit;
 use stickslip_kernels::lanes::{Laned, Lanes, MOST_LANES, Machine, Pack, Processor, Work};
 use stickslip_kernels::matter::Matter;
+use stickslip_kernels::natural::Natural;
 use stickslip_kernels::particles::{ColumnStart, Columns, Particles, deformation_entries};
 use stickslip_kernels::pass::members::{Copies, HistoryOfGroup, Members};
 use stickslip_kernels::pass::{FaultKind, Found, ParticleFault, Verbs};
+use stickslip_kernels::viscosity::BulkViscosity;
 use stickslip_mechanics::geometry::form::{Cell, Form};
 use stickslip_mechanics::material::{Material, Motion, NeoHookean, Thickening, Thickness};
+use stickslip_mechanics::scheme::VolumeChange;
 use stickslip_mechanics::tensor::{Matrix, Number, Symmetric, Vector};
 
 /// What the pass is told.
@@ -27,6 +30,8 @@ pub struct Straining<T> {
     pub body: usize,
     /// How long the step took that led to these places; zero for none [s].
     pub dt: T,
+    /// Bulk viscosity.
+    pub viscosity: Option<BulkViscosity<T>>,
     /// What the processor has.
     pub processor: Processor,
     /// What of it is asked for.
@@ -49,28 +54,51 @@ pub enum Asked {
 /// F = sum x_I (x) grad N_I      sigma = law(F, F F_before^-1, dt)      P = J sigma F^-T      f_I = -sum V_p P grad N_I
 /// x_p = sum N_I x_I             v_p = sum N_I v_I
 /// ```
+/// Initial stress, heat and bulk viscosity act as on the common grid. Particles of a material that averages its volume
+/// share the dilatation of their cell, and its pressure, which is the transpose of that (Hughes 1980, Int. J. Numer.
+/// Methods Eng. 15; D: dimensions, in which traces and I are taken):
 ///
-/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for.
+/// ```text
+/// Jm = sum V_q J_q / sum V_q      F <- (Jm/J)^(1/D) F
+/// p = tr_D(sigma)/D               P = J sigma F^-T with F as it was and J sigma <- Jm (sigma - p I) + J pm I
+/// pm = sum V_q p_q / sum V_q
+/// ```
+///
+/// What it found has the fastest wave in undeformed lengths, c |F^-1 n|, which the stable step asks for. With it goes
+/// what bulk viscosity took [J].
 pub fn strain<T: Laned, const D: usize>(
     interior: &mut Interior<D>,
     table: &Table<T, D>,
     (matter, particles): (&Matter<T>, &mut Particles<T, D>),
     straining: Straining<T>,
-) -> Found<T> {
-    let Straining { body, dt, processor, asked } = straining;
-    let mut found = Found::NOTHING;
+) -> (Found<T>, f64) {
+    let Straining { body, dt, viscosity, processor, asked } = straining;
+    let (mut found, mut damped) = (Found::NOTHING, 0.0);
     // In plane strain a body may have the thickness that plane stress gave it before.
     let thickness = ColumnStart::<D>::DEFORMATION + deformation_entries(D).len() - 1;
     let plane = D == 3
         || matter.thickness == Thickness::Moved
             && particles.line(thickness).iter().all(|&stretch| stretch == T::ONE);
     let columns = particles.open();
-    let visit = Visit { interior, table, matter, columns, body, dt, plane, asked, found: &mut found };
+    let (found_here, damped_here) = (&mut found, &mut damped);
+    let visit = Visit {
+        interior,
+        table,
+        matter,
+        columns,
+        body,
+        dt,
+        viscosity,
+        plane,
+        asked,
+        found: found_here,
+        damped: damped_here,
+    };
     T::run(processor, visit);
     // Cells know particles by their places, which ascend as their numbers do.
     let fault =
         found.fault.map(|fault| ParticleFault { number: particles.numbers()[fault.particle], ..fault });
-    Found { fault, ..found }
+    (Found { fault, ..found }, damped)
 }
 
 struct Visit<'a, T, const D: usize> {
@@ -80,10 +108,13 @@ struct Visit<'a, T, const D: usize> {
     columns: Columns<T, D>,
     body: usize,
     dt: T,
+    viscosity: Option<BulkViscosity<T>>,
     /// Whether F has a one beyond the plane.
     plane: bool,
     asked: Asked,
     found: &'a mut Found<T>,
+    /// What bulk viscosity took [J].
+    damped: &'a mut f64,
 }
 
 impl<T: Laned, const D: usize> Work for Visit<'_, T, D> {
@@ -113,11 +144,69 @@ struct Constants<V> {
     material: Material<V>,
     per_density: V,
     dt: V,
+    /// Expansion by temperature [1/K].
+    expansion: V,
+    /// c_1 h and c_2 h^2 of bulk viscosity [m, m^2].
+    viscosity: Option<[V; 2]>,
     /// Whether the law asks for the deformation of the step.
     by_increments: bool,
+    /// Whether particles share the dilatation of their cell.
+    averages: bool,
     /// Whether forces are asked for.
     pushes: bool,
 }
+
+/// What particles answer to their deformation, before it is given to the nodes.
+struct Answer<V> {
+    /// Cauchy stress that gives forces [Pa].
+    stress: Symmetric<V>,
+    /// F^-1.
+    inverse: Matrix<V>,
+    /// V_0 J, zero of those that there are not [m^3].
+    volume: V,
+    /// J over the mean of the cell.
+    share: V,
+}
+
+impl<V: Number> Answer<V> {
+    /// tr_D(sigma) / D
+    #[inline(always)]
+    fn mean_stress<const D: usize>(&self) -> V {
+        let mut sum = V::ZERO;
+        for i in 0..D {
+            sum += self.stress.0[i];
+        }
+        sum * V::of(1.0 / D as f64)
+    }
+
+    /// Its own part of a mean over the cell, in the place of the mean stress that it has.
+    #[inline(always)]
+    fn share_mean<const D: usize>(&mut self, mean: V) {
+        let more = self.share.times_plus(mean, -self.mean_stress::<D>());
+        for i in 0..D {
+            self.stress.0[i] += more;
+        }
+    }
+
+    /// -V P
+    #[inline(always)]
+    fn pulls<const D: usize>(&self) -> Matrix<V> {
+        let mut pulls = Matrix::ZERO;
+        for i in 0..D {
+            for a in 0..D {
+                let mut sum = V::NOTHING;
+                for j in 0..D {
+                    sum = self.stress.at(i, j).times_plus(self.inverse.0[a][j], sum);
+                }
+                pulls.0[i][a] = -(sum * self.volume);
+            }
+        }
+        pulls
+    }
+}
+
+/// Particles of a cell at most.
+const MOST_PARTICLES: usize = SITES;
 
 impl<T: Laned, const D: usize> Visit<'_, T, D> {
     #[inline(always)]
@@ -126,9 +215,22 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
             material: self.matter.material.map(V::splat),
             per_density: V::splat(T::ONE / self.matter.density),
             dt: V::splat(self.dt),
-            by_increments: !matches!(*self.matter.material, Material::NeoHookean(_)),
+            expansion: V::splat(self.matter.expansion),
+            viscosity: self.viscosity.filter(|_| self.dt > T::ZERO).map(|BulkViscosity { coefficients }| {
+                let cell = T::of(self.interior.form.cell);
+                [coefficients[0] * cell, coefficients[1] * cell * cell].map(V::splat)
+            }),
+            by_increments: self.viscosity.is_some()
+                || !matches!(*self.matter.material, Material::NeoHookean(_)),
+            averages: self.averages(),
             pushes,
         }
+    }
+
+    /// Whether particles share the dilatation of their cell.
+    #[inline(always)]
+    fn averages(&self) -> bool {
+        self.matter.volume_change == VolumeChange::Averaged
     }
 
     #[inline(always)]
@@ -152,8 +254,13 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
     /// The law of a body whose particles may stay behind. In single precision, cells side by side would have to share
     /// one place from which theirs are measured.
     fn elastic(&self) -> Option<NeoHookean<T>> {
+        // Its pressure depends on J alone, of which in space a mean can take the place.
+        let is_plain = self.plane
+            && (D == 3 || !self.averages())
+            && self.viscosity.is_none()
+            && self.columns.natural_columns().is_empty();
         match *self.matter.material {
-            Material::NeoHookean(law) if const { size_of::<T>() == size_of::<f64>() } && self.plane => {
+            Material::NeoHookean(law) if const { size_of::<T>() == size_of::<f64>() } && is_plain => {
                 Some(law)
             }
             _ => None,
@@ -170,7 +277,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
             let mut fastest = V::Register::ZERO;
             let table = self.table;
             if !table.blocks.is_empty() {
-                let whole = Whole::<V::Register, D>::new(form, law, density);
+                let whole = Whole::<V::Register, D>::new(form, (law, self.averages()), density);
                 let places = Rows::places(&self.interior.places);
                 let mut forces = Rows::forces(form.nodes());
                 for block in &table.blocks {
@@ -179,7 +286,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 }
                 forces.add_to(&mut self.interior.forces);
             }
-            let elastic = Elastic::new(law, density);
+            let elastic = Elastic::new((law, self.averages()), density);
             for &number in &table.others {
                 let at = (number as usize, &form.cells[number as usize]);
                 sound &= self.pull_cell::<V>(&elastic, &form.volumes, at, &mut fastest);
@@ -204,15 +311,26 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
     ) -> bool {
         let (mut pulls, mut sound) = (Matrix::<V>::ZERO, true);
         let volumes = &volumes[cell.first as usize..(cell.first + cell.count) as usize];
-        for n in 0..V::REGISTERS {
-            let first = n * V::Register::COUNT;
-            if first >= volumes.len() {
-                break;
+        let registers = (0..V::REGISTERS).filter(|n| n * V::Register::COUNT < volumes.len());
+        let volume = |first: usize| {
+            V::Register::from_fn(|lane| volumes.get(first + lane).map_or(T::ZERO, |&v| T::of(v)))
+        };
+        let mut mean = None;
+        if D == 3 && elastic.averages {
+            let mut sums = [T::ZERO; 2];
+            for n in registers.clone() {
+                let first = n * V::Register::COUNT;
+                let own = self.deformation::<V::Register>((number, cell, first));
+                let volume = volume(first);
+                let here = [volume * determinant(&own), volume].map(total);
+                sums = [sums[0] + here[0], sums[1] + here[1]];
             }
+            mean = Some(V::Register::splat(sums[0] / sums[1]));
+        }
+        for n in registers {
+            let first = n * V::Register::COUNT;
             let own = self.deformation::<V::Register>((number, cell, first));
-            let volume =
-                V::Register::from_fn(|lane| volumes.get(first + lane).map_or(T::ZERO, |&v| T::of(v)));
-            let (here, all) = elastic.pulls::<D>(own, volume, fastest);
+            let (here, all) = elastic.pulls::<D>(own, (volume(first), mean), fastest);
             sound &= all;
             for i in 0..D {
                 for a in 0..D {
@@ -261,15 +379,47 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
     #[inline(never)]
     fn one_by_one(&mut self, constants: &Constants<Pack<T, 1>>, (number, cell): (usize, &Cell)) {
         let (columns, all) = (self.columns, cell.first..cell.first + cell.count);
+        let lanes = all.clone().enumerate();
+        let alone = |particle: u32| Cell { first: particle, count: 1, ..*cell };
+        let form = self.interior.form.clone();
+        let volume = |particle: u32| Pack([T::of(form.volumes[particle as usize])]);
+        let total = all.clone().fold(Pack::ZERO, |sum, particle| sum + volume(particle));
+        let mut dilatation = None;
+        if constants.averages {
+            let own = |(lane, particle): (usize, u32)| {
+                let f = self.deformation::<Pack<T, 1>>((number, &alone(particle), lane));
+                volume(particle) * plane_jacobian::<_, D>(&f)
+            };
+            dilatation = Some(lanes.clone().map(own).fold(Pack::ZERO, |sum, own| sum + own) / total);
+        }
         let mut fastest = Pack::ZERO;
-        for (lane, particle) in all.enumerate() {
+        let mut answers: [Option<Answer<Pack<T, 1>>>; MOST_PARTICLES] = [const { None }; MOST_PARTICLES];
+        for (lane, particle) in lanes.clone() {
             let index = [particle];
             let members = Members::in_a_row(&columns, &index);
-            let one = Cell { first: particle, count: 1, ..*cell };
-            if let Err(kind) = self.lanes(constants, (number, &one, lane), &members, &mut fastest) {
-                let particle = particle as usize;
-                let fault = ParticleFault { body: self.body, particle, number: particle as u32, kind };
-                *self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
+            let at = (number, &alone(particle), lane);
+            let own = self.deformation(at);
+            match self.respond(constants, (own, dilatation), at, &members, &mut fastest) {
+                Ok(answer) => answers[lane] = Some(answer),
+                Err(kind) => {
+                    let particle = particle as usize;
+                    let fault = ParticleFault { body: self.body, particle, number: particle as u32, kind };
+                    *self.found = self.found.and(Found { fault: Some(fault), signal: T::ZERO });
+                }
+            }
+        }
+        let of = |(_, particle): (usize, u32), answer: &Option<Answer<Pack<T, 1>>>| {
+            answer.as_ref().map_or(Pack::ZERO, |answer| volume(particle) * answer.mean_stress::<D>())
+        };
+        let sum = lanes.clone().zip(&answers).fold(Pack::ZERO, |sum, (at, answer)| sum + of(at, answer));
+        let mean = sum / total;
+        for (lane, particle) in lanes.filter(|_| constants.pushes) {
+            if let Some(answer) = &mut answers[lane] {
+                if constants.averages {
+                    answer.share_mean::<D>(mean);
+                }
+                let pulls = answer.pulls::<D>();
+                self.scatter(&pulls, (number, &alone(particle), lane));
             }
         }
         self.take(&fastest.0);
@@ -336,16 +486,34 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
                 }
             }
         }
-        let pulls = self.respond(constants, own, (number, cell, lane), members, fastest)?;
+        let mut dilatation = None;
+        if constants.averages {
+            let volume = self.undeformed(constants, members);
+            let sums = [volume * plane_jacobian::<V, D>(&own), volume].map(total);
+            dilatation = Some(V::splat(sums[0] / sums[1]));
+        }
+        let mut answer =
+            self.respond(constants, (own, dilatation), (number, cell, lane), members, fastest)?;
+        if constants.averages {
+            let volume = self.undeformed(constants, members);
+            let sums = [volume * answer.mean_stress::<D>(), volume].map(total);
+            answer.share_mean::<D>(V::splat(sums[0] / sums[1]));
+        }
         if constants.pushes {
-            self.scatter(&pulls, (number, cell, lane));
+            self.scatter(&answer.pulls::<D>(), (number, cell, lane));
         }
         Ok(())
     }
 
-    /// Gives particles F, their places and their velocities, and the stress that their law answers with; -V P of those
-    /// that there are. `fastest` becomes the larger of itself and the squares of their waves' speeds in undeformed
-    /// lengths, lane by lane [m^2/s^2].
+    /// Undeformed volumes of the particles that there are, and zero beyond [m^3].
+    #[inline(always)]
+    fn undeformed<V: Lanes<Real = T>>(&self, constants: &Constants<V>, members: &Members<'_, T, D>) -> V {
+        (members.mass::<V>() * constants.per_density).first(members.count())
+    }
+
+    /// Gives particles F, of which they share the dilatation if one is given, their places and their velocities, and
+    /// the stress that their law answers with. `fastest` becomes the larger of itself and the squares of their waves'
+    /// speeds in undeformed lengths, lane by lane [m^2/s^2].
     ///
     /// # Errors
     /// A particle has a fault; of several lanes nothing is stored, of a single one what a report shows.
@@ -353,17 +521,18 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
     fn respond<V: Lanes<Real = T>>(
         &mut self,
         constants: &Constants<V>,
-        own: Matrix<V>,
+        (own, dilatation): (Matrix<V>, Option<V>),
         (number, cell, lane): (usize, &Cell, usize),
         members: &Members<'_, T, D>,
         fastest: &mut V,
-    ) -> Result<Matrix<V>, FaultKind> {
+    ) -> Result<Answer<V>, FaultKind> {
         let before = members.deformation::<V>();
         let mut deformation = own;
         if const { D == 2 } {
             deformation.0[2][2] = before.0[2][2];
         }
         let mut jacobian = deformation.det();
+        let mut own = deformation;
         let mut sound = u32::MAX;
         let mut fault = None;
         let mut require = |lanes: u32, kind: FaultKind| {
@@ -374,20 +543,57 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         };
         require(V::splat(T::LARGEST).at_least(jacobian.abs()), FaultKind::NotFinite);
         require(jacobian.at_least(V::splat(T::TINY)), FaultKind::Inverted);
+        let mut share = V::ONE;
+        if let Some(mean) = dilatation {
+            share = plane_jacobian::<V, D>(&own) / mean;
+            let ratio = mean / plane_jacobian::<V, D>(&own);
+            let stretch = if const { D == 2 } { ratio.sqrt() } else { ratio.cbrt() };
+            for i in 0..D {
+                for a in 0..D {
+                    deformation.0[i][a] *= stretch;
+                }
+            }
+            jacobian *= ratio;
+        }
         let increment =
             if constants.by_increments { deformation * before.inverse() } else { Matrix::IDENTITY };
         let stress = if constants.by_increments { members.stress::<V>() } else { Symmetric::ZERO };
         let mut history = HistoryOfGroup::new(members);
         let mut motion = Motion { deformation, jacobian, increment, stress, dt: constants.dt };
-        if const { D == 2 } && self.matter.thickness == Thickness::Free {
+        let natural: Option<Natural<V>> = members.natural::<V>(constants.expansion);
+        let thickness_is_free = D == 2 && self.matter.thickness == Thickness::Free;
+        if let Some(natural) = &natural {
+            motion = if const { D == 2 } && thickness_is_free {
+                natural.seen_with_free_thickness(&motion)
+            } else {
+                natural.seen(&motion)
+            };
+        }
+        if const { D == 2 } && thickness_is_free {
             let Thickening { stretch, found } = constants.material.thickening(&motion, &history);
             require(found, FaultKind::NoThickness);
             motion = motion.thickened(stretch);
+            let stretch = natural.as_ref().map_or(stretch, |natural| natural.thickening(stretch));
             deformation.0[2][2] *= stretch;
+            own.0[2][2] *= stretch;
             jacobian *= stretch;
         }
         let (stress, modulus) = constants.material.respond_with_modulus((&motion, true), &mut history);
+        let modulus = natural.as_ref().map_or(modulus, |natural| modulus / natural.volume);
         history.changed = true;
+        let [mut bulk, mut damped] = [V::ZERO; 2];
+        if let Some([linear, quadratic]) = constants.viscosity {
+            let mut strain = V::ZERO;
+            for i in 0..D {
+                strain += increment.0[i][i] - V::ONE;
+            }
+            let (rate, speed) = (strain / constants.dt, (modulus * constants.per_density).sqrt());
+            let over_density = BulkViscosity::<T>::over_density([linear, quadratic], rate, speed);
+            // Its pressure acts on the nodes in the step that comes, and did in that before.
+            let before = members.viscosity::<V>() * constants.per_density;
+            bulk = over_density / (constants.per_density * jacobian);
+            damped = -(before * jacobian + over_density) * strain;
+        }
         let sum = stress.0.iter().fold(V::ZERO, |sum, &entry| sum + entry);
         require(V::splat(T::LARGEST).at_least(sum.abs()), FaultKind::NotFinite);
         let all = (1 << V::COUNT) - 1;
@@ -398,7 +604,7 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
             }
             return Err(kind);
         }
-        let inverse = deformation.inverse();
+        let inverse = own.inverse();
         let volume = members.mass::<V>() * constants.per_density;
         let speed = modulus * constants.per_density * squared_shrinking::<V, D>(&inverse);
         // What is no number is passed over, on all machines: they give the second one then.
@@ -413,19 +619,19 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
         members.store(ColumnStart::<D>::VOLUME, volume * jacobian);
         members.give_back::<V>(ColumnStart::<D>::VOLUME..ColumnStart::<D>::VOLUME + 1);
         history.store::<V>();
-        // -V P of the particles that there are.
-        let pull = (volume * jacobian).first(members.count());
-        let mut pulls = Matrix::ZERO;
-        for i in 0..D {
-            for a in 0..D {
-                let mut sum = V::NOTHING;
-                for j in 0..D {
-                    sum = stress.at(i, j).times_plus(inverse.0[a][j], sum);
-                }
-                pulls.0[i][a] = -(sum * pull);
+        let mut stress = stress;
+        if constants.viscosity.is_some() {
+            members.store_viscosity(bulk);
+            for i in 0..D {
+                stress.0[i] -= bulk;
+            }
+            let energies = (damped * members.mass::<V>()).numbers();
+            for energy in &energies.0[..members.count().min(V::COUNT)] {
+                *self.damped += 0.5 * energy.f64();
             }
         }
-        Ok(pulls)
+        // Of the particles that there are.
+        Ok(Answer { stress, inverse, volume: (volume * jacobian).first(members.count()), share })
     }
 
     /// f_I += sum over the lanes of -V P grad N_I
@@ -479,6 +685,18 @@ impl<T: Laned, const D: usize> Visit<'_, T, D> {
             }
         }
     }
+}
+
+/// Sum over the lanes.
+#[inline(always)]
+fn total<V: Lanes>(of: V) -> V::Real {
+    of.numbers().0[..V::COUNT].iter().fold(V::Real::ZERO, |sum, &number| sum + number)
+}
+
+/// det F in the dimensions of the body's grid.
+#[inline(always)]
+fn plane_jacobian<V: Number, const D: usize>(f: &Matrix<V>) -> V {
+    if D == 2 { f.0[0][0] * f.0[1][1] - f.0[0][1] * f.0[1][0] } else { f.det() }
 }
 
 /// A bound of |F^-1 n|^2 over all directions, from the inverse of F: the largest sum of magnitudes in a row of F^-1

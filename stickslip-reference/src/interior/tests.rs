@@ -57,8 +57,8 @@ impl<const D: usize> Alone<D> {
 
     pub fn strain(&mut self, dt: f64) {
         let mut ask = |asked: Asked| {
-            let straining = Straining { body: 0, dt, processor: Processor::best(), asked };
-            let found =
+            let straining = Straining { body: 0, dt, viscosity: None, processor: Processor::best(), asked };
+            let (found, _) =
                 strain(&mut self.interior, &self.table, (&self.matter, &mut self.particles), straining);
             assert!(found.fault.is_none(), "{found:?}");
             found.signal
@@ -235,7 +235,11 @@ fn bend<const D: usize>(alone: &mut Alone<D>) {
 #[test]
 fn forces_are_those_of_particles_one_by_one_and_do_not_depend_on_who_looks() {
     fn compare<const D: usize>(shape: &Shape, share: f64) {
+        [VolumeChange::Own, VolumeChange::Averaged].map(|change| compare_by::<D>(shape, share, change));
+    }
+    fn compare_by<const D: usize>(shape: &Shape, share: f64, volume_change: VolumeChange) {
         let mut alone = Alone::<D>::new(shape, 0.1, |x| x * 0.3);
+        alone.matter.volume_change = volume_change;
         bend(&mut alone);
         let whole: u32 = alone.table.blocks.iter().map(|block| block.count).sum();
         assert!(f64::from(whole) >= share * alone.interior.form.cells.len() as f64, "{whole}");
@@ -244,8 +248,8 @@ fn forces_are_those_of_particles_one_by_one_and_do_not_depend_on_who_looks() {
             let interior = &mut alone.interior;
             let mut signal = 0.0;
             for &asked in asked {
-                let straining = Straining { body: 0, dt: 0.0, processor, asked };
-                let found = strain(interior, &alone.table, (&alone.matter, &mut all), straining);
+                let straining = Straining { body: 0, dt: 0.0, viscosity: None, processor, asked };
+                let (found, _) = strain(interior, &alone.table, (&alone.matter, &mut all), straining);
                 assert!(found.fault.is_none(), "{found:?}");
                 signal = f64::max(signal, found.signal);
             }
@@ -284,6 +288,46 @@ fn forces_are_those_of_particles_one_by_one_and_do_not_depend_on_who_looks() {
     compare::<2>(&cuboid([0.5, 1.1, 0.0]), 1.0);
     compare::<2>(&turned(cuboid([0.5, 1.1, 0.0])), 1.0);
     compare::<2>(&Shape::disk([0.0; 2], 0.42), 0.3);
+}
+
+/// Where particles share the dilatation of their cell, forces are what the strain energy loses as nodes move:
+/// f_I = -dE/dx_I; and a stretch that is the same everywhere gives the forces of particles on their own.
+#[test]
+fn forces_of_shared_volumes_are_the_gradient_of_the_energy() {
+    fn differ<const D: usize>(shape: &Shape) {
+        let mut alone = Alone::<D>::new(shape, 0.1, |_| Vector::ZERO);
+        alone.interior.places.iter_mut().for_each(|place| *place = *place * 1.1);
+        alone.strain(0.0);
+        let own = alone.interior.forces.clone();
+        alone.matter.volume_change = VolumeChange::Averaged;
+        alone.strain(0.0);
+        let largest = own.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        let apart = own.iter().zip(&alone.interior.forces).map(|(a, b)| (*a - *b).norm());
+        assert!(apart.fold(0.0, f64::max) < 1e-12 * largest);
+
+        bend(&mut alone);
+        alone.strain(0.0);
+        let (forces, places) = (alone.interior.forces.clone(), alone.interior.places.clone());
+        let largest = forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        let moved = 1e-6;
+        let masters = (0..places.len()).filter(|&node| alone.interior.masses[node] > 0.0);
+        for node in masters.step_by(7).collect::<Vec<_>>() {
+            for axis in 0..D {
+                let [ahead, behind] = [moved, -moved].map(|way| {
+                    alone.interior.places.clone_from(&places);
+                    alone.interior.places[node][axis] += way;
+                    alone.interior.follow();
+                    alone.strain(0.0);
+                    alone.strain_energy()
+                });
+                let expected = (behind - ahead) / (2.0 * moved);
+                let off = (forces[node][axis] - expected).abs();
+                assert!(off < 1e-5 * largest, "{node} {axis}: {} {expected}", forces[node][axis]);
+            }
+        }
+    }
+    differ::<2>(&Shape::disk([0.3, 0.2], 0.42));
+    differ::<3>(&Shape::Ball { center: [0.3, 0.2, 0.1], radius: 0.25 });
 }
 
 /// A body that has swollen by a hundredth has slower waves than it had, and lanes without a particle have none: rows of

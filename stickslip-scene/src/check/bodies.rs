@@ -66,7 +66,7 @@ fn measure_body(scene: &Scene, i: usize) -> Result<FillingExtent, Problem> {
             key: "space.cell".into(),
             found: format!(
                 "cells of {} m, {sites:.1e} particle sites in body `{}`",
-                short(scene.discretization.cell),
+                short(scene.cell(body)),
                 body.name
             ),
             allowed: format!("at most {MOST_SITES:.1e} sites in a body"),

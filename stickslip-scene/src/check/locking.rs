@@ -56,7 +56,7 @@ pub(super) fn bending(scene: &Scene) -> Option<Warning> {
     }
     let by_splines = matches!(scene.discretization.basis, BasisKind::Spline | BasisKind::Cubic);
     let on_own_grid = |body: usize| scene.interior(body) == Interior::Reference;
-    let cell = scene.discretization.cell;
+    let cell = |body: usize| scene.cell(&scene.bodies[body]);
     let material = |body: usize| &scene.materials[scene.bodies[body].material];
     let ratio = |body: usize| material(body).law.elastic().poisson_ratio();
     let stiff = |&body: &usize| {
@@ -71,7 +71,7 @@ pub(super) fn bending(scene: &Scene) -> Option<Warning> {
     let thin: Vec<_> = (0..scene.bodies.len())
         .into_par_iter()
         .filter(stiff)
-        .filter_map(|body| Some((body, thickness(scene, body, ENOUGH * cell)?)))
+        .filter_map(|body| Some((body, thickness(scene, body, ENOUGH * cell(body))?)))
         .collect();
     let (body, thickness) = *thin.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let measured = match on_own_grid(body) {
@@ -91,7 +91,7 @@ pub(super) fn bending(scene: &Scene) -> Option<Warning> {
             "a Poisson's ratio of {:.3} with {:.1} cells across: {} bends too stiffly; {measured}; if it does not \
              bend, this does no harm",
             ratio(body),
-            thickness / cell,
+            thickness / cell(body),
             and_more(&format!("`{}`", scene.bodies[body].name), thin.len() - 1),
         ),
     ))

@@ -29,7 +29,7 @@ pub struct OwnGrid {
 
 /// The particles of a body on a grid of its own, and that grid with no points yet; `None` where none fits.
 pub(super) fn filled(scene: &Scene, body: &Body, faces: HeldFaces) -> Option<(Vec<ParticleSite>, OwnGrid)> {
-    let cell = scene.discretization.cell;
+    let cell = scene.cell(body);
     match scene.dimension.axes() {
         2 => filled_in::<2>(&body.shape, cell, faces),
         _ => filled_in::<3>(&body.shape, cell, faces),
@@ -84,7 +84,7 @@ impl Surface {
             return Surface::default();
         }
         let body = &scene.bodies[body];
-        let (cell, faces) = (scene.discretization.cell, scene.held_faces(body));
+        let (cell, faces) = (scene.cell(body), scene.held_faces(body));
         let all = free_points(&body.shape, (cell, &faces), scene.dimension.axes());
         let stand_for = all.len().div_ceil(MOST_POINTS).max(1);
         let points = all.iter().step_by(stand_for).map(|point| point.position).collect();
@@ -103,7 +103,8 @@ pub(super) fn own_grids(scene: &Scene, extents: &[FillingExtent]) -> Vec<Option<
     if grids.iter().all(Option::is_none) {
         return grids;
     }
-    let (axes, reach) = (scene.dimension.axes(), NEAR * scene.discretization.cell);
+    let axes = scene.dimension.axes();
+    let reach = |body: usize| NEAR * scene.cell(&scene.bodies[body]);
     let surfaces: Vec<Surface> =
         (0..scene.bodies.len()).into_par_iter().map(|body| Surface::of(scene, body)).collect();
     let boxes: Vec<Bounds> = extents.iter().map(|extent| extent.bounds).collect();
@@ -115,16 +116,17 @@ pub(super) fn own_grids(scene: &Scene, extents: &[FillingExtent]) -> Vec<Option<
     let near = |pair: [usize; 2]| {
         let [a, b] = pair;
         let of = |body: usize, other: usize| {
+            let reach = reach(body);
             let (around, shape) = (boxes[other].grown(reach), &scene.bodies[other].shape);
             let is_around = |at: &[f64; 3]| (0..axes).all(|k| around.min[k] < at[k] && at[k] < around.max[k]);
             surfaces[body].near(|at| is_around(at) && shape.distance(*at, axes) < reach)
         };
         [(a, of(a, b)), (b, of(b, a))]
     };
-    let pairs = pairs_within(&boxes, reach);
+    let pairs = pairs_within(&boxes, (0..boxes.len()).map(reach).fold(0.0, f64::max));
     let pairs: Vec<_> = pairs.into_par_iter().filter(|&pair| meet(pair)).flat_map_iter(near).collect();
     let at_faces =
-        |(body, surface): (usize, &Surface)| (body, surface.near(|at| is_near_face(scene, at, reach)));
+        |(body, surface): (usize, &Surface)| (body, surface.near(|at| is_near_face(scene, at, reach(body))));
     let all: Vec<(usize, usize)> = surfaces.iter().enumerate().map(at_faces).chain(pairs).collect();
     for (grid, surface) in grids.iter_mut().zip(&surfaces) {
         grid.iter_mut().for_each(|grid| grid.points = surface.count);

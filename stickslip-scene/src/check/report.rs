@@ -384,10 +384,10 @@ pub(super) fn time_step(scene: &Scene, extents: &[FillingExtent]) -> f64 {
             true => 0.0,
             false => scene.materials[body.material].wave_speed(scene.dimension.thickness()),
         };
-        wave + speed(extents, (body, extent))
+        (wave + speed(extents, (body, extent))) / scene.cell(body)
     };
     let fastest = scene.bodies.iter().zip(extents).map(signal).fold(0.0, f64::max);
-    let step = scene.time.courant * scene.discretization.cell / fastest;
+    let step = scene.time.courant / fastest;
     let step = step.min(scene.time.max_step.unwrap_or(f64::INFINITY)).min(longest_step(scene));
     if step.is_finite() { step } else { scene.time.end }
 }

@@ -34,7 +34,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
         .filter_map(|body| Some((body, narrowest(scene, body)?)))
         .collect();
     let (body, Slit { gap, place }) = found.iter().min_by(|a, b| a.1.gap.total_cmp(&b.1.gap))?;
-    let (cell, reach) = (scene.discretization.cell, reach(scene, *body));
+    let (cell, reach) = (scene.cell(&scene.bodies[*body]), reach(scene, *body));
     let place: Vec<String> = place[..scene.dimension.axes()].iter().map(|x| format!("{x:.3e}")).collect();
     let text = format!(
         "not resolved by the grid: parts of {} face each other {gap:.3e} m apart near ({}) m, {:.2} cells; nearer \
@@ -56,7 +56,7 @@ fn reach(scene: &Scene, body: usize) -> f64 {
 /// The narrowest slit of a body that is narrower than its grid can see.
 fn narrowest(scene: &Scene, body: usize) -> Option<Slit> {
     let shape = &scene.bodies[body].shape;
-    let (cell, axes) = (scene.discretization.cell, scene.dimension.axes());
+    let (cell, axes) = (scene.cell(&scene.bodies[body]), scene.dimension.axes());
     let bounds = shape.bounds(axes).filter(|_| !is_simple(shape))?;
     let reach = reach(scene, body) * cell;
     // Most points have nothing in the ball before them, as wide as a slit may be.

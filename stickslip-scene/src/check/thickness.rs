@@ -16,11 +16,11 @@ const TOLERANCE: f64 = 2e-3;
 
 /// Deformable bodies fewer than three cells thick, and longer than they are thick.
 pub(super) fn warning(scene: &Scene) -> Option<Warning> {
-    let cell = scene.discretization.cell;
+    let cell = |body: usize| scene.cell(&scene.bodies[body]);
     let thin: Vec<_> = (0..scene.bodies.len())
         .into_par_iter()
         .filter(|&body| !scene.bodies[body].is_rigid())
-        .filter_map(|body| Some((body, thickness(scene, body, NEEDED * cell)?)))
+        .filter_map(|body| Some((body, thickness(scene, body, NEEDED * cell(body))?)))
         .filter(|&(body, thickness)| is_long(scene, body, thickness))
         .collect();
     let (body, thickness) = *thin.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -41,7 +41,7 @@ pub(super) fn warning(scene: &Scene) -> Option<Warning> {
              {NEEDED}; if it does not bend, this does no harm",
             and_more(&format!("`{}`", scene.bodies[body].name), thin.len() - 1),
             short(thickness),
-            thickness / cell,
+            thickness / cell(body),
             short(thickness / NEEDED)
         ),
     ))
@@ -61,7 +61,7 @@ const LONG: f64 = 2.0;
 ///
 /// A ring or shell is as thick as its wall. What a mirror completes counts whole; so does what goes on in a fixed face.
 pub(super) fn thickness(scene: &Scene, body: usize, enough: f64) -> Option<f64> {
-    let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
+    let (axes, cell) = (scene.dimension.axes(), scene.cell(&scene.bodies[body]));
     let shape = &scene.bodies[body].shape;
     let whole = MirroredShape::new(shape, continuing_faces(scene), axes);
     let sites =

@@ -38,12 +38,13 @@ pub fn carried_bodies(scene: &Scene) -> Vec<Carried> {
         let material = &scene.materials[scene.bodies[body].material];
         (material.law.wave_modulus_at_rest(scene.dimension.thickness()), material.density)
     };
+    let stiffness = |body: usize| wave(body).0 / scene.cell(&scene.bodies[body]);
     // Of bodies that no rule tells from each other the stiffest, and the surface of all.
     let mut classes: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
     for body in (0..scene.bodies.len()).filter(|&body| scene.interior(body) == Interior::Reference) {
         let (stiffest, surface) = classes.entry(names.class(body)).or_insert((body, 0.0));
         *surface += box_surface(scene, body);
-        if wave(body).0 > wave(*stiffest).0 {
+        if stiffness(body) > stiffness(*stiffest) {
             *stiffest = body;
         }
     }
@@ -54,10 +55,10 @@ pub fn carried_bodies(scene: &Scene) -> Vec<Carried> {
         };
         let partners = classes.iter().filter(|(class, _)| touches(class)).map(|(_, of)| *of);
         let (partner, surface) =
-            partners.reduce(|a, b| (if wave(b.0).0 > wave(a.0).0 { b.0 } else { a.0 }, a.1 + b.1))?;
+            partners.reduce(|a, b| (if stiffness(b.0) > stiffness(a.0) { b.0 } else { a.0 }, a.1 + b.1))?;
         let properties = MassProperties::of(scene, &scene.bodies[body], scene.bodies[body].as_free_rigid()?)?;
         let area = box_surface(scene, body).min(surface);
-        let ((modulus, density), cell) = (wave(partner), scene.discretization.cell);
+        let ((modulus, density), cell) = (wave(partner), scene.cell(&scene.bodies[partner]));
         let rate = modulus / cell * area * yields(scene, body, &properties);
         let ratio = rate * cell * cell * density / modulus;
         Some(Carried { body, mass: properties.mass, partner, rate, ratio })

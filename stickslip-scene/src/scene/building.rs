@@ -146,7 +146,8 @@ impl Scene {
         let Outputs { tables, .. } = Outputs::of_bodies(self.bodies.len(), self.time.end);
         let deforming = self.bodies.iter().filter(|body| !body.is_rigid());
         let wave = |body: &Body| self.materials[body.material].wave_speed(self.dimension.thickness());
-        let step = self.time.courant * self.discretization.cell / deforming.map(wave).fold(0.0, f64::max);
+        let crosses = |body: &Body| wave(body) / self.cell(body);
+        let step = self.time.courant / deforming.map(crosses).fold(0.0, f64::max);
         let step = step.min(self.time.max_step.unwrap_or(f64::INFINITY));
         // As many times as long as those of few bodies.
         let longer = tables * ROWS[0] / self.time.end;
@@ -209,6 +210,7 @@ impl Body {
             particles: Arrangement::default(),
             particles_per_side: None,
             interior: None,
+            cell: None,
             motion: BodyMotion::default(),
             stress: None,
             velocity_by_place: None,

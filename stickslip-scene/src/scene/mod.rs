@@ -397,6 +397,9 @@ pub struct Body {
     /// Where it is computed, if not where those of the scene are; see [`Scene::interior`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interior: Option<Interior>,
+    /// Side of the cells of its own grid, where it is not that of the scene's [m]; see [`Scene::cell`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cell: Option<f64>,
     /// How it moves.
     pub motion: BodyMotion,
     /// Cauchy stress before anything moves, by the place: xx, yy, zz, xy, yz, xz, tension positive [Pa]; `None`: none.
@@ -639,7 +642,7 @@ impl Scene {
     pub fn lattice(&self, body: &Body) -> SiteLattice {
         SiteLattice {
             origin: self.domain.as_ref().map_or([0.0; 3], |domain| domain.min),
-            spacing: self.discretization.cell / self.per_side(body),
+            spacing: self.cell(body) / self.per_side(body),
             dimension: self.dimension.axes(),
         }
     }
@@ -652,6 +655,12 @@ impl Scene {
     /// Where a body is computed: as it says, or else as the scene does. A rigid one is on the grid.
     pub fn interior(&self, body: usize) -> Interior {
         self.interior_of(&self.bodies[body])
+    }
+
+    /// Side of the cells on which a body is computed: of its own grid, or of the one that all share [m].
+    pub fn cell(&self, body: &Body) -> f64 {
+        let own = body.cell.filter(|_| self.interior_of(body) == Interior::Reference);
+        own.unwrap_or(self.discretization.cell)
     }
 
     fn interior_of(&self, body: &Body) -> Interior {

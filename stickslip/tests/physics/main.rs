@@ -51,6 +51,7 @@ mod reactions;
 mod reference;
 mod reference_free;
 mod reference_periodic;
+mod reference_together;
 mod relaxation;
 mod resistance;
 mod rest_on_own_grids;

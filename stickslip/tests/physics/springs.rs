@@ -2,9 +2,9 @@
 //!
 //! Source: two masses on a spring, omega^2 = k (1/m_1 + 1/m_2); with a dashpot dE/dt = -c (dl/dt)^2.
 //!
-//! Set-up: two stiff blocks apart, joined by a spring between the faces that look at each other: both deform, or one is
-//! rigid and free, or one is driven; in the plane and in space, with each stress update; along a line that is none of
-//! the axes; a spring far stiffer than a step could follow.
+//! Set-up: two stiff blocks apart, joined by a spring between the faces that look at each other: both deform, on
+//! grids of their own or one of them on the common grid, or one is rigid and free, or one is driven; in the plane and in
+//! space, with each stress update; along a line that is none of the axes; a spring far stiffer than a step could follow.
 //!
 //! Expected: the period within 1e-3; momentum and angular momentum to round-off; the ledger with the
 //! works of the springs within 1e-3 of the energy; a dashpot takes the energy of its impulse; a stiff spring holds the
@@ -61,7 +61,8 @@ fn period(simulation: &mut dyn Simulation, about: f64) -> f64 {
 #[test]
 fn two_blocks_swing_on_a_spring() {
     let moving = |v: f64, third: &str| format!("velocity = [{v}, 0{third}]");
-    let mut cases = vec![("3d", "", "deform"), ("plane-strain", "", "free"), ("plane-strain", "", "driven")];
+    let mut cases = vec![("3d", "", "deform"), ("3d", "", "mixed")];
+    cases.extend(["free", "driven", "mixed"].map(|kind| ("plane-strain", "", kind)));
     let updates = STRESS_UPDATES.map(|update| format!("stress_update = \"{update}\""));
     cases.extend(updates.iter().map(|update| ("plane-strain", update.as_str(), "deform")));
     for (dimension, time, kind) in cases {
@@ -71,6 +72,8 @@ fn two_blocks_swing_on_a_spring() {
         let [light, heavy] = [1000.0, 1500.0].map(|density: f64| density * 0.0016 * depth);
         let second = match kind {
             "free" => format!("{}\nrigid.free = {{}}", moving(-0.1, third)),
+            // The other is on a grid of its own.
+            "mixed" => format!("{}\ninterior = \"grid\"", moving(-0.1, third)),
             "driven" => "rigid = { velocity = [0.05, 0] }".to_string(),
             _ => moving(-0.1, third),
         };

@@ -22,7 +22,7 @@ mod rigid;
 mod springs;
 mod walls;
 
-pub(super) use springs::center as center_of;
+pub(super) use springs::{center as center_of, feel, pull_of, push};
 
 use super::Engine;
 use super::among::Among;
@@ -212,7 +212,7 @@ impl<const D: usize> ReferenceBody<D> {
             allowed: "shapes of two cells and more; or interior = \"grid\"".to_string(),
             help: None,
         };
-        let (cell, faces) = (scene.discretization.cell, scene.held_faces(body));
+        let (cell, faces) = (scene.cell(body), scene.held_faces(body));
         let form = Arc::new(Form::<D>::new(&body.shape, cell, faces).map_err(no_grid)?);
         let moduli = layer_moduli(scene, number);
         let width = width::<D>(&body.shape, &faces);
@@ -311,6 +311,8 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let start = Instant::now();
         let found = self.strain_references(dt, Asked::Forces);
         self.watch.lap("stress update", start);
+        found.iter().for_each(|(_, damped)| self.workspace.sums.damped().add(*damped));
+        let found: Vec<_> = found.into_iter().map(|(found, _)| found).collect();
         self.judge(found.iter().copied().fold(Found::NOTHING, Found::and).fault)?;
         let escaped = self.escaped_reference();
         if escaped.is_some() {
@@ -395,6 +397,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         drop(obstacles);
         grid.push((&settings.common, skin), &mut field.nodes, &touches);
         reference_walls.clear();
+        // Velocities lie half a step before places, but at the start they do not: what begins with a stress would get
+        // twice the push that it gives in half a step.
+        let kick = if state.steps == 0 && settings.begins_stressed { 0.5 * dt } else { dt };
         let mut own = Homeward::default();
         for (place, (body, loads)) in bodies.iter_mut().zip(&loads.bodies).enumerate() {
             // Of several ranks one moves the nodes of a body, that with its particles.
@@ -403,9 +408,9 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             }
             let is_held = body.interior.form.held.is_some() && !state.walls.is_empty();
             let before = is_held.then(|| body.interior.velocities.clone());
-            body.interior.accelerate(dt, gravity, &loads.inertia);
+            body.interior.accelerate(kick, gravity, &loads.inertia);
             if let Some(before) = before {
-                let reactions = body.interior.reactions(&before, gravity, &loads.inertia, dt);
+                let reactions = body.interior.reactions(&before, gravity, &loads.inertia, kick);
                 RigidWall::book_held(&walls, reference_walls, (body.body, &reactions), count);
             }
             if among.is_some() {
@@ -515,14 +520,21 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         }
     }
 
-    /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress.
-    fn strain_references(&mut self, dt: T, asked: Asked) -> Vec<Found<T>> {
+    /// Gives the nodes the forces of the stress with which their bodies begin.
+    pub(super) fn begin_stressed(&mut self) {
+        self.strain_references(T::ZERO, Asked::Forces);
+    }
+
+    /// Lets particles take the deformation that the nodes say, and adds up the forces of their stress: what that found
+    /// of each body, and what bulk viscosity took of it [J].
+    fn strain_references(&mut self, dt: T, asked: Asked) -> Vec<(Found<T>, f64)> {
         let processor = match self.settings.path {
             ParticleLoop::Lanes(processor) => processor,
             ParticleLoop::OneLane => Processor::Any,
         };
         let Engine { settings, state, .. } = self;
-        let mut found = vec![Found::NOTHING; settings.references.len()];
+        let mut found = vec![(Found::NOTHING, 0.0); settings.references.len()];
+        let viscosity = settings.viscosity;
         let (bodies, nodes) = (Disjoint::new(&mut state.bodies), Disjoint::new(&mut state.references.nodes));
         each(&mut found, 1, |place, found| {
             let (body, table) = (&settings.references[place].body, &settings.tables[place]);
@@ -532,10 +544,17 @@ impl<T: Laned, const D: usize> Engine<T, D> {
             if here.particles.is_empty() {
                 return;
             }
-            let straining = Straining { body: *body, dt, processor, asked };
+            let straining = Straining { body: *body, dt, viscosity, processor, asked };
             *found = strain(interior, table, (&here.matter, &mut here.particles), straining);
         });
         found
+    }
+
+    /// How many cells of the grid of a body make one of the common grid; one where it has none of its own.
+    pub(super) fn finer(&self, body: usize) -> f64 {
+        self.reference_of(body).map_or(1.0, |place| {
+            self.settings.lattice.cell.f64() / T::of(self.state.references.nodes[place].form.cell).f64()
+        })
     }
 
     /// The signal by which the common grid's cells give the step that these bodies allow [m/s], from the fastest wave
@@ -546,20 +565,25 @@ impl<T: Laned, const D: usize> Engine<T, D> {
         let least = if self.settings.time.relax.is_some() { 0.0 } else { 1.0 / LARGER_STEPS };
         let of_body = |place: usize| {
             let (own, wave) = (&self.settings.references[place], found[place].signal.f64());
+            let finer = self.finer(own.body);
             let alone = wave * least.max(courant / ALONE);
             if self.state.references.layers[place].lingers == 0.0 {
-                return alone;
+                return finer * alone;
             }
             let landing = self.workspace.reference_touching.approach.get(place).map_or(0.0, |v| v / LANDING);
             let waves = wave.max(own.wave) * (USUAL / SAFE).max(courant) / own.courant;
-            alone.max(waves).max(landing * courant)
+            finer * alone.max(waves).max(landing * courant)
         };
         let waves = (0..found.len()).map(of_body).fold(0.0, f64::max);
         // Both share the same w = 2/dt: squares add up.
         let rocking = 0.5 * self.workspace.reference_touching.rate.sqrt() * self.settings.lattice.cell.f64();
         let waves = waves.hypot(rocking * (USUAL / SAFE).max(courant));
-        let fastest = self.state.references.nodes.iter().flat_map(|nodes| &nodes.velocities);
-        let speed = fastest.fold(0.0, |most: f64, v| most.max(v.dot(*v))).sqrt();
+        let speed_of = |(own, nodes): (&ReferenceBody<D>, &Interior<D>)| {
+            let square = nodes.velocities.iter().fold(0.0, |most: f64, v| most.max(v.dot(*v)));
+            self.finer(own.body) * square.sqrt()
+        };
+        let bodies = self.settings.references.iter().zip(&self.state.references.nodes);
+        let speed = bodies.map(speed_of).fold(0.0, f64::max);
         // Two bodies come nearer by twice that.
         waves.max(2.0 * speed)
     }

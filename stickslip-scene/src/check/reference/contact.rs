@@ -12,7 +12,7 @@ const OF_RULE: &[Refusal] = &[
     (
         "law",
         |rule| (!matches!(rule.law, ContactLaw::Surface | ContactLaw::Glued)).then(|| law(rule)),
-        "\"surface\", the default, \"none\", or \"glued\" to a rigid body",
+        "\"surface\", the default, \"none\", or \"glued\" to a rigid body or another such body",
     ),
     ("restitution", |rule| above_zero(rule.restitution), "0, the default"),
     ("overlap", |rule| rule.press.map(|_| "\"press\"".to_string()), "\"kept\", the default"),
@@ -97,8 +97,8 @@ fn refused(scene: &Scene, [a, b]: [usize; 2], rule: Option<usize>) -> Option<Pro
     if rule.law == ContactLaw::None {
         return None;
     }
-    // Glue makes one body of two on the common grid, which layers between two grids are not.
-    let joins = rule.law == ContactLaw::Glued && !scene.bodies[b].is_rigid();
+    // Glue makes one body of two on the common grid, to which no layer belongs.
+    let joins = rule.law == ContactLaw::Glued && Side::of(scene, b) == Side::Grid;
     let (key, found, allowed) = OF_RULE.iter().find_map(|(key, found, allowed)| {
         let found = if joins && *key == "law" { Some(law(rule)) } else { found(rule) };
         Some((key, found?, allowed))

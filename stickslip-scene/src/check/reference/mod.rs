@@ -8,34 +8,20 @@ mod contact;
 mod tests;
 
 use super::bodies::smallest_extent;
-use super::loads;
 use super::settings::is_over_arrays;
 use super::table::short;
 use crate::geometry::form::Form;
 use crate::geometry::{Curved, Shape};
 use crate::material::Material;
 use crate::rigid::{Carried, carried_bodies};
-use crate::scene::{
-    Action, Body, FACES, Face, Interior, Leaving, NamedMaterial, Problem, Scene, VolumeChange,
-};
+use crate::scene::{Body, FACES, Face, Interior, Leaving, NamedMaterial, Problem, Scene};
 
 /// What a body may not have, by its number.
-const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] = &[
-    point_cloud,
-    particles_per_side,
-    thickness,
-    cells,
-    law_over_arrays,
-    damage,
-    averaged_volume,
-    initial_stress,
-    walls,
-    joined,
-];
+const OF_BODY: &[fn(&Scene, usize) -> Option<Problem>] =
+    &[point_cloud, particles_per_side, thickness, cells, law_over_arrays, damage, walls, joined];
 
 /// What a scene may not have in which there is one, by the number of the first.
-const OF_SCENE: &[fn(&Scene, usize) -> Option<Problem>] =
-    &[removal, bulk_viscosity, temperatures, springs, joints, light_bodies];
+const OF_SCENE: &[fn(&Scene, usize) -> Option<Problem>] = &[removal, joints, light_bodies];
 
 /// Particles along each side of a cell.
 const PER_SIDE: f64 = 2.0;
@@ -53,13 +39,32 @@ const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 const ROUND_OFF: f64 = 1e-9;
 
 /// # Errors
-/// The first thing that bodies with interior "reference" cannot have. Shapes without bounds are refused before, for all
+/// The first thing that bodies with interior "reference" cannot have, or cells of a body that has no grid of its own.
+/// Shapes without bounds are refused before, for all
 /// bodies that deform.
 pub(super) fn check(scene: &Scene) -> Result<(), Problem> {
     let mut bodies = (0..scene.bodies.len()).filter(|&body| is_reference(scene, body)).peekable();
     let found = bodies.peek().and_then(|&first| OF_SCENE.iter().find_map(|row| row(scene, first)));
     let found = found.or_else(|| bodies.find_map(|body| OF_BODY.iter().find_map(|row| row(scene, body))));
-    found.map_or_else(|| contact::check(scene), Err)
+    found.or_else(|| cells_of_no_grid(scene)).map_or_else(|| contact::check(scene), Err)
+}
+
+/// Cells of a body that has no grid of its own.
+fn cells_of_no_grid(scene: &Scene) -> Option<Problem> {
+    let has_none = |body: &usize| scene.bodies[*body].cell.is_some() && !is_reference(scene, *body);
+    let body = (0..scene.bodies.len()).find(has_none)?;
+    let Body { name, cell, .. } = &scene.bodies[body];
+    let why = match (scene.bodies[body].is_rigid(), &scene.discretization.because) {
+        (true, _) => "is rigid".to_string(),
+        (false, Some(because)) => format!("is on the grid that all share: {because}"),
+        (false, None) => "is on the grid that all share".to_string(),
+    };
+    Some(Problem {
+        key: format!("bodies[{body}].cell"),
+        found: format!("{} m, where `{name}` {why}", short(cell.unwrap_or_default())),
+        allowed: "none; or interior = \"reference\" for a body that deforms".to_string(),
+        help: None,
+    })
 }
 
 /// Chooses where bodies are computed that do not say so, in a scene that leaves it open: on grids of their own those
@@ -107,9 +112,8 @@ const MOST_TRIED: f64 = 2e5;
 /// A shape over which no grid of its own fits: balls and boxes are judged by their sides.
 fn no_grid(scene: &Scene) -> Option<String> {
     let is_simple = |shape: &Shape| matches!(shape, Shape::Ball { .. } | Shape::Box { .. });
-    let cell = scene.discretization.cell;
     let found = |body: usize| {
-        let shape = &scene.bodies[body].shape;
+        let (shape, cell) = (&scene.bodies[body].shape, scene.cell(&scene.bodies[body]));
         if !is_reference(scene, body)
             || is_simple(shape)
             || matches!(shape, Shape::Curved(Curved::PointCloud(_)))
@@ -193,7 +197,7 @@ fn particles_per_side(scene: &Scene, body: usize) -> Option<Problem> {
 }
 
 fn thickness(scene: &Scene, body: usize) -> Option<Problem> {
-    let least = THINNEST * scene.discretization.cell;
+    let least = THINNEST * scene.cell(&scene.bodies[body]);
     let extent = smallest_extent(&scene.bodies[body].shape, scene.dimension.axes());
     // A shape in which nothing is has a problem of its own.
     let is_thin = extent > 0.0 && extent < least * (1.0 - ROUND_OFF);
@@ -204,16 +208,20 @@ fn thickness(scene: &Scene, body: usize) -> Option<Problem> {
 
 /// Cells in the box round a body and its margin; none of one without bounds.
 fn cells_around(scene: &Scene, body: usize) -> f64 {
-    let (axes, cell) = (scene.dimension.axes(), scene.discretization.cell);
+    let (axes, cell) = (scene.dimension.axes(), scene.cell(&scene.bodies[body]));
     let Some(bounds) = scene.bodies[body].shape.bounds(axes) else { return 0.0 };
     bounds.grown(MARGIN * cell).size()[..axes].iter().map(|side| (side / cell).ceil()).product()
 }
 
 fn cells(scene: &Scene, body: usize) -> Option<Problem> {
-    let (cell, cells) = (scene.discretization.cell, cells_around(scene, body));
+    let (cell, cells) = (scene.cell(&scene.bodies[body]), cells_around(scene, body));
+    let key = match scene.bodies[body].cell {
+        Some(_) => format!("bodies[{body}].cell"),
+        None => "space.cell".to_string(),
+    };
     let found = format!("{cells:.1e} cells of {} m in the box round a body", short(cell));
     let allowed = format!("at most {MOST_CELLS:.1e}");
-    (cells > MOST_CELLS).then(|| problem(scene, body, "space.cell".to_string(), &found, &allowed))
+    (cells > MOST_CELLS).then(|| problem(scene, body, key, &found, &allowed))
 }
 
 fn law_over_arrays(scene: &Scene, body: usize) -> Option<Problem> {
@@ -228,12 +236,6 @@ fn damage(scene: &Scene, body: usize) -> Option<Problem> {
         .then(|| problem(scene, body, law_key(scene, body), "a law by which material parts", allowed))
 }
 
-fn averaged_volume(scene: &Scene, body: usize) -> Option<Problem> {
-    let key = format!("materials.{}.volume_change", material(scene, body).name);
-    (material(scene, body).volume_change == VolumeChange::Averaged)
-        .then(|| problem(scene, body, key, "\"averaged\"", "\"own\", the default"))
-}
-
 fn material(scene: &Scene, body: usize) -> &NamedMaterial {
     &scene.materials[scene.bodies[body].material]
 }
@@ -241,11 +243,6 @@ fn material(scene: &Scene, body: usize) -> &NamedMaterial {
 fn law_key(scene: &Scene, body: usize) -> String {
     let material = material(scene, body);
     format!("materials.{}.{}", material.name, material.law.name())
-}
-
-fn initial_stress(scene: &Scene, body: usize) -> Option<Problem> {
-    scene.bodies[body].stress.as_ref()?;
-    Some(problem(scene, body, format!("bodies[{body}].stress"), "a stress at the start", "none"))
 }
 
 fn walls(scene: &Scene, body: usize) -> Option<Problem> {
@@ -278,30 +275,6 @@ fn removal(scene: &Scene, body: usize) -> Option<Problem> {
     let removes = scene.domain.as_ref().is_some_and(|domain| domain.leaving == Leaving::Remove);
     let key = "space.domain.leaving".to_string();
     removes.then(|| problem(scene, body, key, "\"remove\"", "\"stop\", the default"))
-}
-
-fn bulk_viscosity(scene: &Scene, body: usize) -> Option<Problem> {
-    let mut keys = ["bulk_linear", "bulk_quadratic"].into_iter().zip(scene.damping.bulk);
-    let (key, value) = keys.find(|(_, value)| *value != 0.0)?;
-    Some(problem(scene, body, format!("damping.{key}"), &value.to_string(), "0, the default"))
-}
-
-fn temperatures(scene: &Scene, _: usize) -> Option<Problem> {
-    let mut warm = scene.loads.iter().zip(loads::keys(scene));
-    let (load, key) = warm
-        .find(|(load, _)| matches!(load.action, Action::Temperature(_)) && is_reference(scene, load.body))?;
-    Some(problem(scene, load.body, format!("{key}.temperature"), "a temperature", "none"))
-}
-
-fn springs(scene: &Scene, _: usize) -> Option<Problem> {
-    let mut ends = scene.springs.iter().enumerate().flat_map(|(i, spring)| {
-        let [from, to] = spring.ends.each_ref().map(|end| end.body);
-        [("from", [from, to]), ("to", [to, from])].map(move |(key, bodies)| (i, key, bodies))
-    });
-    let meets = |other: usize| is_reference(scene, other) || scene.bodies[other].is_rigid();
-    let (i, key, [body, _]) = ends.find(|&(.., [body, other])| is_reference(scene, body) && !meets(other))?;
-    let allowed = "one to another such body, or to a rigid body";
-    Some(problem(scene, body, format!("springs[{i}].{key}.body"), "a spring", allowed))
 }
 
 /// A free rigid body so light that the layer of contact would make steps far shorter than waves do.

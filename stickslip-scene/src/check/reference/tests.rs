@@ -96,14 +96,6 @@ fn what_a_body_on_the_grid_may_have_is_refused() {
         ),
         (
             APART,
-            &[("materials.rubber.volume_change", "averaged")],
-            "materials.rubber.volume_change",
-            "\"averaged\"",
-            "\"own\", the default",
-        ),
-        (APART, &[("bodies[0].stress", "{ xx = 1 }")], "bodies[0].stress", "a stress at the start", "none"),
-        (
-            APART,
             &[("space.domain", cut.as_str())],
             "bodies[0].shape",
             "a body that reaches beyond the face `x_min` of the domain",
@@ -126,22 +118,6 @@ fn what_a_body_on_the_grid_may_have_is_refused() {
             "bodies[0].shape",
             "a body that is joined to its own images along x",
             "one that ends between the periodic faces",
-        ),
-        (APART, &[("damping.bulk_linear", "0.06")], "damping.bulk_linear", "0.06", "0, the default"),
-        (APART, &[("damping.bulk_quadratic", "1.5")], "damping.bulk_quadratic", "1.5", "0, the default"),
-        (
-            "contact = [{ law = 'none' }]\nloads = [{ body = 'b', force = [1, 0] }, { body = 'a', temperature = 20 }]",
-            &[],
-            "loads[1].temperature",
-            "a temperature",
-            "none",
-        ),
-        (
-            "contact = [{ law = 'none' }]\nsprings = [{ from.body = 'b', to.body = 'a', stiffness = 1 }]",
-            &[],
-            "springs[0].to.body",
-            "a spring",
-            "one to another such body, or to a rigid body",
         ),
     ] {
         let expected = format!("{key}: {found}, {of_a}{allowed}; or interior = \"grid\" for `a`");
@@ -313,7 +289,7 @@ fn bodies_that_steps_would_wait_for_are_refused() {
 
 #[test]
 fn rules_of_such_bodies_have_what_acts_at_points() {
-    let laws = "\"surface\", the default, \"none\", or \"glued\" to a rigid body";
+    let laws = "\"surface\", the default, \"none\", or \"glued\" to a rigid body or another such body";
     for (rule, key, found, allowed) in [
         ("law = 'gap'", "law", "\"gap\"", laws),
         ("law = 'glued'", "law", "\"glued\"", laws),

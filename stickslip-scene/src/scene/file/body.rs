@@ -44,6 +44,8 @@ table! {
         particles_per_side: Option<Count>,
         /// Where it is computed, if it deforms; by default as space says.
         interior: Option<Word<Interior>>,
+        /// Side of the cells of its own grid [m], with interior = "reference"; by default that of space.
+        cell: Option<QuantityInput<Length>>,
         /// Velocity at the start [m/s]; of a body that deforms also by the place x, y, z:
         /// velocity = [0, "1 m/s * cos(pi * y / 6 m)"]. By default none.
         velocity: Option<VectorInput<Velocity>>,
@@ -307,6 +309,7 @@ impl Body {
             body.particles_per_side = Some(count.value(context, 1..=8)?);
         }
         body.interior = self.interior.as_ref().map(|word| word.value(context)).transpose()?;
+        body.cell = self.cell.as_ref().map(|cell| cell.positive(context)).transpose()?;
         let keys = BodyKeys { velocity: &self.velocity, spin: &self.spin, rigid: &self.rigid };
         (body.motion, body.velocity_by_place) = keys.motion(context)?;
         body.stress = self.stress.as_ref().map(|stress| stress.resolve(context).map(Box::new)).transpose()?;

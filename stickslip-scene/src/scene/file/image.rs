@@ -45,6 +45,8 @@ table! {
         particles_per_side: Option<Count>,
         /// Where they are computed, if they deform; by default as space says.
         interior: Option<Word<Interior>>,
+        /// Side of the cells of their own grids [m], with interior = "reference"; by default that of space.
+        cell: Option<QuantityInput<Length>>,
         /// Velocity of each at the start [m/s]; by default none.
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity of each about its centre of mass at the start [rad/s]; by default none.
@@ -99,6 +101,7 @@ impl Image {
         let per_side =
             self.particles_per_side.as_ref().map(|count| count.value(context, 1..=8)).transpose()?;
         let interior = self.interior.as_ref().map(|word| word.value(context)).transpose()?;
+        let cell = self.cell.as_ref().map(|cell| cell.positive(context)).transpose()?;
         let image = self.pixels(&file, context)?;
         if matches!(solids, Solids::Labels { .. }) {
             self.are_labels(&file, &image)?;
@@ -135,7 +138,7 @@ impl Image {
             let shape = Shape::from(Curved::Image(part));
             let mut body = scene::Body::new(&format!("{name} {number}"), material, shape);
             (body.particles_per_side, body.motion) = (per_side, motion.clone());
-            (body.interior, body.velocity_by_place) = (interior, by_place.clone());
+            (body.interior, body.cell, body.velocity_by_place) = (interior, cell, by_place.clone());
             bodies.add(body, &self.name, declared)?;
         }
         Ok(())

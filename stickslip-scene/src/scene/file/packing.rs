@@ -52,6 +52,8 @@ table! {
         particles_per_side: Option<Count>,
         /// Where they are computed, if they deform; by default as space says.
         interior: Option<Word<Interior>>,
+        /// Side of the cells of their own grids [m], with interior = "reference"; by default that of space.
+        cell: Option<QuantityInput<Length>>,
         /// Velocity of each at the start [m/s]; by default none.
         velocity: Option<VectorInput<Velocity>>,
         /// Angular velocity of each about its centre of mass at the start [rad/s]; by default none.
@@ -126,6 +128,7 @@ impl Packing {
         let mut body = scene::Body::new(&name, material, grain.clone());
         (body.particles, body.particles_per_side) = (fitted, per_side);
         body.interior = self.interior.as_ref().map(|word| word.value(context)).transpose()?;
+        body.cell = self.cell.as_ref().map(|cell| cell.positive(context)).transpose()?;
         (body.motion, body.velocity_by_place) = (motion, by_place);
         bodies.add_copies(&body, &placements, (&self.name, declared), context)
     }
