@@ -2,12 +2,9 @@
 
 use crate::is_one_in;
 use crate::template::Template;
-use flate2::Compression;
 use flate2::bufread::ZlibDecoder;
-use flate2::write::ZlibEncoder;
-use serde::Serialize;
 use sha2::{Digest, Sha256};
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::Path;
 use stickslip::door::View;
 use stickslip::march::March;
@@ -15,6 +12,8 @@ use stickslip::observe::{Checkpoint, Memory, OutputFolder, Recorder, state_sum};
 use stickslip::scene::StartVelocities;
 use stickslip::step::build;
 
+/// Version of the format.
+const VERSION: u32 = 4;
 /// Bytes before the content, and behind it; of a place.
 const HEAD: usize = 25;
 const SUM: usize = 32;
@@ -24,44 +23,28 @@ const IS_PACKED: usize = 1;
 /// With one of so many outputs look whether they fit, which opens all files.
 const REMEMBERED: u64 = 20;
 
-/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or its content, to which the
-/// first line of version 1, which has it uncompressed, and the sum are added; or the same of version 2, compressed
-/// already or by us; or of version 3, where four bytes before say how long sections are, a section and a plain head,
-/// with all sums, or sections and a head with the byte that says whether it is packed, as they are but for the head's
-/// sum.
+/// Reads a checkpoint: the first byte says whether the bytes behind it are all of it; or, where four bytes before say
+/// how long sections are, a section and a plain head, with all sums, or sections and a head with the byte that says
+/// whether it is packed, as they are but for the head's sum.
 pub fn run(bytes: &[u8]) {
     let Some((&way, content)) = bytes.split_first() else { return };
     let template = Template::get();
     let whole = match way {
         0 => content.to_vec(),
-        4 => {
+        1 => {
             let Some((length, content)) = content.split_first_chunk() else { return };
             let section = content.len().min(u32::from_le_bytes(*length) as usize);
             let (section, head) = content.split_at(section);
             let Some(whole) = Checkpoint::sealed(section, head) else { return };
             whole
         }
-        5 => {
+        _ => {
             let Some((length, content)) = content.split_first_chunk() else { return };
             let sections = content.len().min(u32::from_le_bytes(*length) as usize);
-            let line = [&b"stickslip checkpoint\0"[..], &3_u32.to_le_bytes()].concat();
+            let line = [&b"stickslip checkpoint\0"[..], &VERSION.to_le_bytes()].concat();
             let place = ((HEAD + sections) as u64).to_le_bytes();
             let sum = Sha256::digest([&line, &content[sections..], &place].concat());
             [&line, content, &place, &sum[..]].concat()
-        }
-        _ => {
-            let mut whole = b"stickslip checkpoint\0".to_vec();
-            whole.extend(u32::from(way.clamp(1, 2)).to_le_bytes());
-            if way == 3 {
-                let mut compressed = ZlibEncoder::new(&mut whole, Compression::fast());
-                compressed.write_all(content).expect("it is memory");
-                compressed.finish().expect("it is memory");
-            } else {
-                whole.extend(content);
-            }
-            let sum = Sha256::digest(&whole);
-            whole.extend(sum);
-            whole
         }
     };
     template.with("checkpoints/0000000000.checkpoint", &whole, |folder| {
@@ -117,17 +100,8 @@ pub fn seeds() -> Vec<Vec<u8>> {
         plain
     });
     let sectioned = [&(section.len() as u32).to_le_bytes(), &section[..], &head].concat();
-    // As versions 1 and 2 have it.
-    let whole = Checkpoint::read(&newest).expect("it is sound");
-    let mut plain = Vec::new();
-    let mut named = rmp_serde::Serializer::new(&mut plain).with_struct_map();
-    whole.serialize(&mut named).expect("it is memory");
-    let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
-    packed.write_all(&plain).expect("it is memory");
-    let packed = packed.finish().expect("it is memory");
     // With the head as it is, packed, and the byte that says so.
     let raw = [&((place - HEAD) as u32).to_le_bytes(), &content[HEAD..], &[1]].concat();
-    let ways: [(u8, &[u8]); 6] =
-        [(0, &bytes), (1, &plain), (2, &packed), (3, &plain), (4, &sectioned), (5, &raw)];
+    let ways: [(u8, &[u8]); 3] = [(0, &bytes), (1, &sectioned), (2, &raw)];
     ways.map(|(way, bytes)| [&[way], bytes].concat()).into()
 }

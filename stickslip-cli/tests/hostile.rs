@@ -740,8 +740,7 @@ fn links_among_results_are_refused() {
 fn a_kill_inside_the_first_record_leaves_a_folder_that_is_used() {
     let workplace = workplace();
     for (left, words) in [
-        ("run.json.part", &["run", "scene.toml", "--out", "out"][..]),
-        ("run.json.0a1b2c3d.part", &["run", "scene.toml", "--out", "out"]),
+        ("run.json.0a1b2c3d.part", &["run", "scene.toml", "--out", "out"][..]),
         ("sweep.json.0a1b2c3d.part", &["sweep", "scene.toml", "--out", "out", "--set", "friction=0.2,0.3"]),
     ] {
         for more in [&[][..], &["--overwrite"]] {
@@ -761,7 +760,7 @@ fn a_kill_inside_the_first_record_leaves_a_folder_that_is_used() {
     }
     // What is somebody else's still is.
     fs::create_dir(workplace.path("mine")).unwrap();
-    workplace.write("mine/run.json.part", "{");
+    workplace.write("mine/run.json.0a1b2c3d.part", "{");
     workplace.write("mine/thesis.tex", "years of work");
     refused(&run(&workplace, &["--out", "mine"]), "thesis.tex");
 }

@@ -187,7 +187,7 @@ fn in_space_half_spaces_have_clean_edges_and_the_camera_moves() {
     let balls = picture(&workplace, &[&flags[..], &BARE, &["--body", "ball", "--balls"]].concat());
     assert_ne!(balls, alone);
     assert_ne!(round(&balls), (180, 0));
-    // Surfaces follow from the recorded text of the scene; earlier versions recorded none.
+    // Surfaces follow from the recorded text of the scene: without it balls are drawn.
     std::fs::rename(workplace.path("scene.toml"), workplace.path("gone.toml")).unwrap();
     let without_file = || picture(&workplace, &[&flags[..], &BARE, &["--body", "ball"]].concat());
     assert_eq!(without_file(), alone);

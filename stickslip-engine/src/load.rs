@@ -75,7 +75,6 @@ pub struct LoadSums {
     /// Impulse on the body [N s].
     pub impulse: [f64; 3],
     /// Impulse of moments about the middle of its part, where that is in each step [N m s].
-    #[serde(default)]
     pub moment: [f64; 3],
     /// Work on the body [J].
     pub work: f64,

@@ -74,10 +74,8 @@ pub struct BenchSample {
     /// Part of the repetitions' wall time in which the threads together had a core, over the number of threads.
     pub at_work: Option<f64>,
     /// What each rank had, and did in all repetitions.
-    #[serde(default)]
     pub shares: Vec<RankShare>,
     /// The sum of the state before the first step that counts, which is always the same one.
-    #[serde(default)]
     pub sum: Option<String>,
 }
 

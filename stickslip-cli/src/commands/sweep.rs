@@ -113,7 +113,7 @@ impl Arguments {
                 "--only: found {unknown}; allowed: numbers from 0 to {last}"
             )));
         }
-        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone(), Some(plan.clone()));
+        let record = SweepRecord::new(&members[0].1.scene.title, varied.clone(), plan.clone());
         let pending = |(member, loaded): &(Member, Loaded)| SweepRow {
             run: member.folder.clone(),
             status: "pending".to_owned(),
@@ -160,7 +160,7 @@ impl Arguments {
 
     /// Tells the user that the folder has the results of another sweep, if it has.
     fn tell_of_another(&self, folder: &Path, plan: &Plan) {
-        let before = sweep::read_record(folder).and_then(|record| record.plan);
+        let before = sweep::read_record(folder).map(|record| record.plan);
         if before.is_some_and(|before| before != *plan) {
             let folder = folder.display();
             tell!(
@@ -211,14 +211,7 @@ impl Arguments {
                 folder.display()
             ))
         })?;
-        let plan = record.plan.ok_or_else(|| {
-            Failure::Input(miette!(
-                help = "name the scene file and --set as it was begun, and this folder with --out",
-                "{} was begun by a version that did not record how",
-                folder.display()
-            ))
-        })?;
-        Ok((plan, folder.clone()))
+        Ok((record.plan, folder.clone()))
     }
 
     fn check(&self) -> Result<(), Failure> {

@@ -111,6 +111,7 @@ fn curves(sweep: &Sweep, over: usize, rest: impl Fn(&str) -> Option<&str>) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sweep::plan::Plan;
     use crate::sweep::record::SweepRecord;
 
     #[test]
@@ -121,7 +122,7 @@ mod tests {
             ..SweepRow::default()
         };
         let rows = vec![row("gap", "0.3", 2.0), row("gap", "0.2", 3.0), row("glued", "0.2", 5.0)];
-        let record = SweepRecord::new("waves", vec!["law".to_owned(), "nu".to_owned()], None);
+        let record = SweepRecord::new("waves", vec!["law".to_owned(), "nu".to_owned()], Plan::default());
         let chart = chart(&Sweep { record, rows }, &[]);
         assert_eq!((chart.over.as_str(), chart.panels.len()), ("nu", 1));
         let [gap, glued] = &chart.panels[0].curves[..] else { panic!("{chart:?}") };
@@ -138,7 +139,7 @@ mod tests {
             figures.extend([("strain_energy".to_owned(), 0.0), ("energy_drift".to_owned(), energies[0])]);
             SweepRow { parameters: vec![friction.to_owned()], figures, ..SweepRow::default() }
         };
-        let record = SweepRecord::new("blocks", vec!["friction".to_owned()], None);
+        let record = SweepRecord::new("blocks", vec!["friction".to_owned()], Plan::default());
         let sweep = Sweep { record, rows: vec![row("0.3", [1.0, 2.0, 30.0]), row("0", [3.0, 0.0, 31.0])] };
         let names = |chart: &Chart| -> Vec<String> {
             chart.panels.iter().map(|panel| format!("{} [{}]", panel.name, panel.unit)).collect()

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use stickslip::observe::as_text;
 
 /// What is run: all that a sweep needs to go on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The scene file; absolute, so that whoever goes on may stand elsewhere, or relative to the folder of the sweep
     /// where it lies in there, and goes with it.
@@ -16,7 +16,6 @@ pub struct Plan {
     /// What is set.
     pub variations: Vec<Variation>,
     /// Columns of the user's own.
-    #[serde(default)]
     pub columns: Vec<OwnColumn>,
 }
 

@@ -22,9 +22,8 @@ pub struct SweepRecord {
     pub title: String,
     /// Names of the parameters that vary, in the order of the columns.
     pub parameters: Vec<String>,
-    /// What is run; sweeps before 0.2 did not say.
-    #[serde(default)]
-    pub plan: Option<Plan>,
+    /// What is run.
+    pub plan: Plan,
 }
 
 /// One run; a row of `sweep.csv`.
@@ -82,7 +81,7 @@ const TABLE: &str = "sweep.csv";
 const ROWS: &str = "rows";
 
 impl SweepRecord {
-    pub fn new(title: &str, parameters: Vec<String>, plan: Option<Plan>) -> Self {
+    pub fn new(title: &str, parameters: Vec<String>, plan: Plan) -> Self {
         let (program, version) = ("stickslip".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
         SweepRecord { program, version, title: title.to_owned(), parameters, plan }
     }
@@ -110,11 +109,11 @@ pub fn prepare(folder: &Path, record: &SweepRecord, kept: &[&str]) -> Result<(),
         Failure::Input(miette!(help = help, "cannot write results to {}: {source}", folder.display()))
     };
     fs::create_dir_all(folder).map_err(unusable)?;
-    let own = record.plan.as_ref().map(|plan| plan.scene_file(folder));
+    let own = record.plan.scene_file(folder);
     if !is_sweep(folder) {
         for entry in fs::read_dir(folder).map_err(unusable)? {
             let entry = entry.map_err(unusable)?;
-            if Some(entry.path()) == own || is_of_killed(&entry.path()) {
+            if entry.path() == own || is_of_killed(&entry.path()) {
                 continue;
             }
             return Err(Failure::Input(miette!(
@@ -264,7 +263,7 @@ mod tests {
     #[test]
     fn a_table_comes_back_with_its_holes() {
         let folder = tempfile::tempdir().unwrap();
-        let record = SweepRecord::new("waves", vec!["nu".to_owned()], None);
+        let record = SweepRecord::new("waves", vec!["nu".to_owned()], Plan::default());
         prepare(folder.path(), &record, &[]).unwrap();
         let row = |run: &str, figures: &[(&str, f64)], error: &str| SweepRow {
             run: run.to_owned(),
@@ -284,7 +283,7 @@ mod tests {
         write_row(folder.path(), &sweep.record, &sweep.rows[1]).unwrap();
         assert_eq!(read_row(folder.path(), &sweep.record, "0.4").as_ref(), Some(&sweep.rows[1]));
         assert_eq!(read_row(folder.path(), &sweep.record, "0.5"), None);
-        let other = SweepRecord::new("waves", vec!["cell".to_owned()], None);
+        let other = SweepRecord::new("waves", vec!["cell".to_owned()], Plan::default());
         assert_eq!(read_row(folder.path(), &other, "0.4"), None, "of another sweep");
         write_row(folder.path(), &sweep.record, &sweep.rows[0]).unwrap();
         prepare(folder.path(), &sweep.record, &["0.3"]).unwrap();
@@ -296,7 +295,7 @@ mod tests {
     #[test]
     fn a_parameter_with_the_name_of_a_figure_keeps_it() {
         let folder = tempfile::tempdir().unwrap();
-        let record = SweepRecord::new("waves", vec!["steps".to_owned()], None);
+        let record = SweepRecord::new("waves", vec!["steps".to_owned()], Plan::default());
         let figures = vec![("steps".to_owned(), 7.0)];
         let row = SweepRow { parameters: vec!["3".to_owned()], figures, ..SweepRow::default() };
         write_table(folder.path(), &Sweep { record, rows: vec![row] }).unwrap();
@@ -308,7 +307,7 @@ mod tests {
     fn a_folder_with_other_files_is_refused_and_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
-        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new(), None), &[]);
+        let refused = prepare(folder.path(), &SweepRecord::new("waves", Vec::new(), Plan::default()), &[]);
         assert!(matches!(refused, Err(Failure::Input(_))));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

@@ -51,6 +51,7 @@ fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::plan::Plan;
     use super::super::record::SweepRecord;
     use super::*;
 
@@ -66,7 +67,7 @@ mod tests {
             },
             ..SweepRow::default()
         };
-        let record = SweepRecord::new("laws", vec!["law".to_owned()], None);
+        let record = SweepRecord::new("laws", vec!["law".to_owned()], Plan::default());
         let rows = vec![row("surface", -0.0312, false), row("gap", 4e-5, false)];
         let mut sweep = Sweep { record, rows };
         assert_eq!(table(&sweep), "    law  energy_drift\nsurface       -0.0312\n    gap      4.000e-5\n");

@@ -38,19 +38,15 @@ struct ImpulseSums {
     moment: [f64; 3],
     /// Where the grid repeats, the place of the block that was added last: the next one is that image which is nearest
     /// to it, so that a contact through a face is in one piece, and one that travels through it goes on [m].
-    #[serde(default)]
     place: Option<[f64; 3]>,
     /// Of the impulse, about the origin [N m s].
-    #[serde(default)]
     turn: [f64; 3],
     /// Work of friction [J].
     friction: f64,
     /// Way of slip, the mean over the area of each use [m].
     slip: f64,
     /// Impulses at nodes, and those of them that were reduced to the rule's largest strain.
-    #[serde(default)]
     pushes: u64,
-    #[serde(default)]
     reduced: u64,
     /// Area times duration [m^2 s], and with the gap [m^3 s].
     area: f64,

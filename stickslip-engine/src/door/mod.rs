@@ -323,14 +323,12 @@ pub struct Ledger {
     /// Dissipated by damping, and by impacts of rigid bodies [J].
     pub damping: f64,
     /// The part of it that impacts took, of free rigid bodies on each other and on prescribed ones [J].
-    #[serde(default)]
     pub impacts: f64,
     /// kinetic + strain + potential + friction + adhesion + plastic + damping - external work [J];
     /// constant in an exact solution.
     pub total: f64,
     /// By how much, either way, kinetic and strain energy of bodies on grids of their own do not add up, for they are
     /// half a step apart [J].
-    #[serde(default)]
     pub half_step: f64,
     /// Linear momentum [kg m/s].
     pub momentum: [f64; 3],
@@ -342,16 +340,12 @@ pub struct Ledger {
     /// since the start.
     pub unsettled_nodes: u64,
     /// Mass of particles that left the domain and were taken out, since the start [kg].
-    #[serde(default)]
     pub removed_mass: f64,
     /// Their kinetic, strain and potential energy when they were taken out [J].
-    #[serde(default)]
     pub removed_energy: f64,
     /// Their momentum then [kg m/s].
-    #[serde(default)]
     pub removed_momentum: [f64; 3],
     /// Their angular momentum then, about the origin [kg m^2/s].
-    #[serde(default)]
     pub removed_angular_momentum: [f64; 3],
 }
 
@@ -411,7 +405,6 @@ pub struct LoadState {
     /// Impulse on the body [N s].
     pub impulse: [f64; 3],
     /// Impulse of moments about the middle of its part, where that is in each step [N m s].
-    #[serde(default)]
     pub moment: [f64; 3],
     /// Work on the body [J].
     pub work: f64,
@@ -464,7 +457,6 @@ pub struct ContactSum {
     /// The same times their places [N s m].
     pub moment: [f64; 3],
     /// Moment about the origin of the impulse of the first on the second [N m s].
-    #[serde(default)]
     pub turn: [f64; 3],
     /// Area times duration [m^2 s], in the plane length per depth.
     pub area: f64,
@@ -477,10 +469,8 @@ pub struct ContactSum {
     /// Grid nodes in contact in the last step in which the pair touched.
     pub nodes: usize,
     /// Impulses at nodes since the start, and how many of these were reduced to the rule's `max_strain`.
-    #[serde(default)]
     pub pushes: u64,
     /// See `pushes`.
-    #[serde(default)]
     pub reduced: u64,
 }
 

@@ -19,7 +19,6 @@ pub struct SavedState {
     /// Steps taken.
     pub steps: u64,
     /// How many more count for when spins settle; none in runs that began from no other.
-    #[serde(default)]
     pub(crate) phase: u64,
     /// The bodies in the order of the scene.
     pub bodies: Vec<SavedBody>,
@@ -28,10 +27,8 @@ pub struct SavedState {
     /// Energy that damping took [J].
     pub(crate) damping: f64,
     /// The part of it that impacts of rigid bodies took [J].
-    #[serde(default)]
     pub(crate) impacts: f64,
     /// Work of gravity, where that varies [J].
-    #[serde(default)]
     pub(crate) gravity_work: f64,
     pub(crate) relaxation: RelaxationProgress,
     pub(crate) loads: Vec<LoadSums>,
@@ -39,28 +36,19 @@ pub struct SavedState {
     pub(crate) unbounded: Vec<SavedUnbounded>,
     /// Of each load, how far its points were from their places where the run began; none if they were there.
     pub(crate) moved: Vec<Vec<[f64; 3]>>,
-    #[serde(default)]
     pub(crate) joints: Vec<JointSums>,
-    #[serde(default)]
     pub(crate) springs: Vec<JointSums>,
-    #[serde(default)]
     pub(crate) walls: Vec<WallSums>,
-    #[serde(default)]
     pub(crate) longest_rigid: Option<f64>,
     /// What rigid bodies pushed each other with; nothing where none did.
-    #[serde(default)]
     pub(crate) touch_forces: Vec<TouchForce>,
     /// Nodes of bodies on grids of their own.
-    #[serde(default)]
     pub(crate) nodes: Vec<SavedNodes>,
     /// Points of these bodies that touch.
-    #[serde(default)]
     pub(crate) touching: Vec<Memory>,
     /// What left the domain, body by body; nothing where nothing did.
-    #[serde(default)]
     pub(crate) removed: Vec<RemovedParticles>,
     /// What was written to particles between steps, body by body; nothing where nothing was.
-    #[serde(default)]
     pub(crate) written: Vec<WrittenValues>,
     /// Whether it comes from a snapshot, which knows less.
     #[serde(skip)]
@@ -231,7 +219,6 @@ pub struct SavedBody {
     /// What its particles have.
     pub columns: Vec<SavedColumn>,
     /// How many of its particles have left the domain and are not there.
-    #[serde(default)]
     pub(crate) missing: usize,
     /// Where it is and how it moves, if it is rigid.
     pub(crate) motion: Option<RigidState>,

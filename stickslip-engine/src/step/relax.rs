@@ -42,12 +42,10 @@ pub struct RelaxationProgress {
     /// How often they were stopped.
     pub peaks: u64,
     /// Time since they were stopped, or began [s].
-    #[serde(default)]
     pub since: f64,
     /// Whether they are at rest.
     pub at_rest: bool,
     /// How long the last step was [s].
-    #[serde(default)]
     pub last_step: f64,
 }
 

@@ -53,7 +53,6 @@ pub struct DruckerPrager<T> {
     /// c [Pa]
     pub cohesion: T,
     /// t_0, largest mean tension if it is bounded [Pa].
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_strength: Option<T>,
     fit: Fit,
     /// A [-]

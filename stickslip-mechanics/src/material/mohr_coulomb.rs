@@ -48,7 +48,6 @@ pub struct MohrCoulomb<T> {
     /// c [Pa]
     pub cohesion: T,
     /// t_0, largest principal tension if it is bounded [Pa].
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_strength: Option<T>,
     /// sin(phi)
     #[serde(skip)]

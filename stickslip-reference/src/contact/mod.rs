@@ -133,7 +133,6 @@ pub struct Memory {
     /// first depth it then came to feel [m].
     pub felt: [f64; 2],
     /// Energy that its bond stores, stretched [J]; none where it has no bond.
-    #[serde(default)]
     pub bond: Option<f64>,
 }
 

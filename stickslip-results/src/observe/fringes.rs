@@ -67,8 +67,8 @@ struct FringeWriter {
     folder: OutputFolder,
     table: CsvTable<FringeRow>,
     frames: Vec<PathBuf>,
-    /// Of each, what is in its file; unknown of those that are older than sums.
-    sums: Vec<Option<FileSum>>,
+    /// Of each, what is in its file.
+    sums: Vec<FileSum>,
     /// How many of them are known to be on the disk.
     secured: usize,
     /// From the first look on.
@@ -277,7 +277,7 @@ impl FringeWriter {
             samples: times.len(),
         }])?;
         self.frames.push(path);
-        self.sums.push(Some(sum));
+        self.sums.push(sum);
         Ok(())
     }
 
@@ -293,20 +293,16 @@ impl FringeWriter {
     }
 }
 
-/// What a resumed run needs of pictures: how many there are, and what has fallen on the film of the next.
+/// What a resumed run needs of pictures: what is in their table, and what has fallen on the film of the next.
 #[derive(Serialize, Deserialize)]
 struct SavedFringes {
-    frames: usize,
-    table: u64,
+    table: FileSum,
     largest: f64,
     view: Option<(ImageWindow, Film, Vec<f64>, Vec<Link>)>,
 }
 
-/// What is in the files of pictures, and in their table, where it is known.
-type FringeSums = (Vec<Option<FileSum>>, Option<u32>);
-
 impl FringeWriter {
-    fn save(&mut self) -> Result<(SavedFringes, FringeSums), OutputError> {
+    fn save(&mut self) -> Result<(SavedFringes, Vec<FileSum>), OutputError> {
         self.frames[self.secured..].iter().try_for_each(|path| secure(path))?;
         self.secured = self.frames.len();
         secure(&self.folder.join(FRINGES))?;
@@ -315,20 +311,18 @@ impl FringeWriter {
             (bench.stage().window, film.clone(), times.clone(), links.clone())
         });
         let table = self.table.secured()?;
-        let film =
-            SavedFringes { frames: self.frames.len(), table: table.bytes, largest: self.largest, view };
-        Ok((film, (self.sums.clone(), Some(table.crc))))
+        Ok((SavedFringes { table, largest: self.largest, view }, self.sums.clone()))
     }
 
     /// No pictures yet.
     fn nothing(&self) -> SavedFringes {
-        SavedFringes { frames: 0, table: self.table.header(), largest: 0.0, view: None }
+        SavedFringes { table: self.table.header(), largest: 0.0, view: None }
     }
 
     /// Goes on from there, or only looks whether it could, if not in earnest; false if the film is another camera's.
     fn take_up(
         &mut self,
-        (saved, (mut sums, crc)): (SavedFringes, FringeSums),
+        (saved, sums): (SavedFringes, Vec<FileSum>),
         in_earnest: bool,
     ) -> Result<bool, OutputError> {
         let of_camera = |(window, film, ..): &(ImageWindow, Film, Vec<f64>, Vec<Link>)| {
@@ -338,21 +332,19 @@ impl FringeWriter {
         if !saved.view.iter().all(of_camera) {
             return Ok(false);
         }
-        sums.resize(saved.frames, None);
-        (sums.iter().enumerate())
-            .try_for_each(|(number, sum)| is_there(&self.frame(number), sum.as_ref()))?;
-        self.table.cut((saved.table, crc), in_earnest)?;
+        (sums.iter().enumerate()).try_for_each(|(number, sum)| is_there(&self.frame(number), Some(sum)))?;
+        self.table.cut(saved.table, in_earnest)?;
         if !in_earnest {
             return Ok(true);
         }
-        self.frames = (0..saved.frames).map(|number| self.frame(number)).collect();
-        (self.secured, self.sums) = (self.secured.min(saved.frames), sums);
+        self.frames = (0..sums.len()).map(|number| self.frame(number)).collect();
+        remove_from((sums.len()..).map(|number| self.frame(number)))?;
+        (self.secured, self.sums) = (self.secured.min(sums.len()), sums);
         self.largest = saved.largest;
         self.view = saved.view.map(|(window, film, times, links)| {
             let stage = Stage { window, specimens: self.specimens.clone() };
             Photograph { bench: OpticalBench::new(&self.camera.polariscope, stage), film, times, links }
         });
-        remove_from((saved.frames..).map(|number| self.frame(number)))?;
         Ok(true)
     }
 
@@ -407,18 +399,17 @@ impl Observer for FringesObserver {
         memory.keep("looked", &mut self.looked)?;
         memory.keep("contacts", &mut self.contacts)?;
         // What the checkpoint does not know was not there.
-        let (mut saved, (mut sums, mut crc)) = match memory.is_taking_up() {
-            true => self.writer.ask(|writer| Ok((writer.nothing(), FringeSums::default())))?,
+        let (mut saved, mut sums) = match memory.is_taking_up() {
+            true => self.writer.ask(|writer| Ok((writer.nothing(), Vec::new())))?,
             false => self.writer.ask(FringeWriter::save)?,
         };
         memory.keep("film", &mut saved)?;
         memory.keep("sums", &mut sums)?;
-        memory.keep("sum", &mut crc)?;
         if !memory.is_taking_up() {
             return Ok(());
         }
         let in_earnest = memory.is_in_earnest();
-        let fits = self.writer.ask(move |writer| writer.take_up((saved, (sums, crc)), in_earnest))?;
+        let fits = self.writer.ask(move |writer| writer.take_up((saved, sums), in_earnest))?;
         if fits { Ok(()) } else { Err(memory.wrong("film", "it does not fit the camera of the scene")) }
     }
 }

@@ -27,8 +27,6 @@ pub struct LoadRow {
 }
 
 impl TableRow for LoadRow {
-    const LATER: &'static [&'static str] = &["mx", "my", "mz"];
-
     fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)> {
         let Self { time, load, force: [fx, fy, fz], moment: [mx, my, mz], .. } = self;
         let Self { displacement: [ux, uy, uz], work, .. } = self;

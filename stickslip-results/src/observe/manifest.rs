@@ -61,13 +61,11 @@ pub struct Manifest {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scene_warnings: Vec<Warning>,
     /// What is wrong with its results, in the order in which it was found.
-    #[serde(default)]
     pub warnings: Vec<RunWarning>,
     /// What checks found that the scene has only recorded, in the same order: no warnings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<RunWarning>,
     /// How often the run was looked at for these.
-    #[serde(default)]
     pub looks: u64,
     /// Bytes of each table at the end of the run: one that is shorter was cut since.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -452,17 +450,14 @@ impl Manifest {
         mark().map_err(OutputError::at(&path))
     }
 
-    /// Holds the record in a folder against its own sum; those of earlier versions have none.
+    /// Holds the record in a folder against its own sum.
     ///
     /// # Errors
     /// It is missing, or bytes of it have changed.
     pub(super) fn verify(folder: &Path) -> Result<(), ReadError> {
         let path = folder.join(Self::FILE);
         let bytes = read_bytes(&path).map_err(|error| ReadProblem::Io(error).at(&path))?;
-        let Some(end) = find_sum(&bytes) else { return Ok(()) };
-        // Those of earlier versions have no blanks before it.
-        let expected = with_sum(&bytes[..end]);
-        let same = bytes == expected || bytes[end..] == *sum_of(&bytes[..end], 0).as_bytes();
+        let same = find_sum(&bytes).is_some_and(|end| bytes == with_sum(&bytes[..end]));
         let changed = || ReadProblem::Layout("bytes of it have changed since the run wrote it".to_string());
         if same { Ok(()) } else { Err(changed().at(&path)) }
     }
@@ -510,11 +505,7 @@ impl Manifest {
 fn with_sum(text: &[u8]) -> Vec<u8> {
     /// Of the largest number of 32 bits.
     const DIGITS: usize = 10;
-    [text, sum_of(text, DIGITS).as_bytes()].concat()
-}
-
-fn sum_of(text: &[u8], digits: usize) -> String {
-    format!("{SUM}{:>digits$}\n}}\n", crc32fast::hash(text))
+    [text, format!("{SUM}{:>DIGITS$}\n}}\n", crc32fast::hash(text)).as_bytes()].concat()
 }
 
 /// Where the sum of a record begins.
@@ -586,10 +577,8 @@ mod tests {
         Manifest::verify(folder.path()).unwrap();
         // One that has ended says how already.
         assert!(Manifest::mark_as_failed(&out).is_err());
-        // A sum without blanks, as earlier versions wrote it.
-        let end = find_sum(&bytes).unwrap();
-        let old = [&bytes[..end], sum_of(&bytes[..end], 0).as_bytes()].concat();
-        std::fs::write(out.join(Manifest::FILE), old).unwrap();
-        Manifest::verify(folder.path()).unwrap();
+        // Without its sum it is not what the run wrote.
+        std::fs::write(out.join(Manifest::FILE), &bytes[..find_sum(&bytes).unwrap()]).unwrap();
+        Manifest::verify(folder.path()).unwrap_err();
     }
 }

@@ -50,7 +50,6 @@ pub(super) struct Points {
     bodies: Vec<usize>,
     radius: f64,
     /// Of points that take the particles around them now: whose, and the line through them.
-    #[serde(default)]
     around: Vec<Option<(usize, LinearFit)>>,
     /// Where images of particles are, if the domain is periodic.
     #[serde(skip)]

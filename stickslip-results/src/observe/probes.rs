@@ -137,10 +137,7 @@ impl Observer for ProbesObserver {
 
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
         self.points.remember(memory)?;
-        if !memory.keep("seen", &mut self.seen)? {
-            // Earlier versions did not keep it: nothing can be said.
-            self.seen = self.names.iter().cloned().collect();
-        }
+        memory.keep("seen", &mut self.seen)?;
         self.schedule.remember(memory)?;
         self.table.remember(memory)
     }

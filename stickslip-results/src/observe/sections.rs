@@ -106,10 +106,7 @@ impl Observer for SectionsObserver {
     }
 
     fn remember(&mut self, _: &dyn View, memory: &mut Memory) -> Result<(), OutputError> {
-        if !memory.keep("crossed", &mut self.crossed)? {
-            // Earlier versions did not keep it: nothing can be said.
-            self.crossed = self.sections.iter().map(|cut| cut.section.name.clone()).collect();
-        }
+        memory.keep("crossed", &mut self.crossed)?;
         self.schedule.remember(memory)?;
         self.table.remember(memory)
     }

@@ -15,9 +15,6 @@ use std::sync::Arc;
 
 /// A row of a table through time. The list of its columns serves writing, reading and looking up.
 pub trait TableRow: Clone + Default {
-    /// Columns that tables of earlier versions lack.
-    const LATER: &'static [&'static str] = &[];
-
     /// Its columns in the order of the file, the time among them: name, and where the row keeps the entry.
     fn columns(&mut self) -> Vec<(&'static str, CellValue<'_>)>;
 
@@ -91,12 +88,10 @@ pub(super) const TIME_UNITS: &str = "time_units";
 /// A thread of its own writes it.
 pub(super) struct CsvTable<R> {
     writer: Writer<Sheet>,
-    /// Bytes of the header.
-    header: u64,
+    /// What it holds without rows: its header.
+    header: FileSum,
     /// Length of the scene's unit of time [s].
     unit: Option<f64>,
-    /// Columns that it goes on without, as an earlier version began it.
-    without: &'static [&'static str],
     row: PhantomData<R>,
 }
 
@@ -114,17 +109,12 @@ impl<R: TableRow> CsvTable<R> {
     }
 
     fn open(path: &Path, unit: Option<f64>, waiting: &Arc<Waiting>) -> Result<Self, OutputError> {
-        let header = |without: &[&str]| {
-            let mut row = R::default();
-            let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
-            names.filter(|name| !without.contains(name)).collect::<Vec<_>>().join(",") + "\n"
-        };
-        let earlier = header(R::LATER);
-        let without = if begins_with(path, &earlier) { R::LATER } else { &[] };
-        let header = header(without);
+        let mut row = R::default();
+        let names = row.columns().into_iter().map(|(name, _)| name).chain(unit.map(|_| TIME_UNITS));
+        let header = names.collect::<Vec<_>>().join(",") + "\n";
         let sheet = Sheet::open(path, &header)?;
-        let header = header.len() as u64;
-        Ok(CsvTable { writer: Writer::start(sheet, path, waiting)?, header, unit, without, row: PhantomData })
+        let header = FileSum { bytes: header.len() as u64, crc: crc32fast::hash(header.as_bytes()) };
+        Ok(CsvTable { writer: Writer::start(sheet, path, waiting)?, header, unit, row: PhantomData })
     }
 
     /// Keeps how long it is and what is in it, or cuts off what was written later.
@@ -134,19 +124,16 @@ impl<R: TableRow> CsvTable<R> {
     pub(super) fn remember(&mut self, memory: &mut Memory) -> Result<(), OutputError> {
         // What the checkpoint does not know was not there.
         let mut sum = match memory.is_taking_up() {
-            true => FileSum { bytes: self.header, crc: 0 },
+            true => self.header,
             false => self.secured()?,
         };
         memory.keep("length", &mut sum.bytes)?;
-        let summed = memory.keep("sum", &mut sum.crc)?;
-        if !memory.is_taking_up() {
-            return Ok(());
-        }
-        self.cut((sum.bytes, summed.then_some(sum.crc)), memory.is_in_earnest())
+        memory.keep("sum", &mut sum.crc)?;
+        if memory.is_taking_up() { self.cut(sum, memory.is_in_earnest()) } else { Ok(()) }
     }
 
-    /// Bytes of its header, which it has without rows.
-    pub(super) fn header(&self) -> u64 {
+    /// What it holds without rows.
+    pub(super) fn header(&self) -> FileSum {
         self.header
     }
 
@@ -158,17 +145,12 @@ impl<R: TableRow> CsvTable<R> {
         self.writer.ask(Sheet::secured)
     }
 
-    /// Cuts off what is beyond a length, or only looks whether it could, if not in earnest; `crc` is that of what stays,
-    /// where it is known.
+    /// Cuts off all but what it held once, or only looks whether it could, if not in earnest.
     ///
     /// # Errors
     /// The disk refuses; the table is shorter, or something else is in it.
-    pub(super) fn cut(
-        &mut self,
-        (bytes, crc): (u64, Option<u32>),
-        in_earnest: bool,
-    ) -> Result<(), OutputError> {
-        self.writer.ask(move |sheet| sheet.cut((bytes, crc), in_earnest))
+    pub(super) fn cut(&mut self, then: FileSum, in_earnest: bool) -> Result<(), OutputError> {
+        self.writer.ask(move |sheet| sheet.cut(then, in_earnest))
     }
 
     /// Adds rows. They are complete when they are in the file, which is soon.
@@ -178,7 +160,7 @@ impl<R: TableRow> CsvTable<R> {
     /// not finite; then none of these rows is added.
     pub(super) fn append(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), OutputError> {
         self.writer.make_room()?;
-        let bytes = encode(rows, self.unit, self.without);
+        let bytes = encode(rows, self.unit);
         let bytes = bytes.map_err(|what| OutputError::no_number(self.writer.about(), what))?;
         self.writer.hand_over(bytes.len(), move |sheet| sheet.write(&bytes));
         Ok(())
@@ -245,16 +227,15 @@ impl Sheet {
         Ok(self.file.sum())
     }
 
-    fn cut(&mut self, (bytes, crc): (u64, Option<u32>), in_earnest: bool) -> Result<(), OutputError> {
+    fn cut(&mut self, then: FileSum, in_earnest: bool) -> Result<(), OutputError> {
         let all = self.file.sum();
-        let found = self.take_in(bytes)?;
-        let expected = FileSum { bytes, crc: crc.unwrap_or(found.crc) };
-        if found != expected {
-            let differs = io::Error::new(io::ErrorKind::InvalidData, expected.differs(found).to_string());
+        let found = self.take_in(then.bytes)?;
+        if found != then {
+            let differs = io::Error::new(io::ErrorKind::InvalidData, then.differs(found).to_string());
             return Err(OutputError { path: self.path.clone(), source: differs });
         }
         if in_earnest {
-            return self.file.inner.set_len(bytes).map_err(OutputError::at(&self.path));
+            return self.file.inner.set_len(then.bytes).map_err(OutputError::at(&self.path));
         }
         self.take_in(all.bytes).map(drop)
     }
@@ -271,29 +252,16 @@ impl Sheet {
     }
 }
 
-/// Whether a file is there and begins with this text.
-fn begins_with(path: &Path, text: &str) -> bool {
-    let mut found = vec![0; text.len()];
-    let read = File::open(path).and_then(|mut file| file.read_exact(&mut found));
-    read.is_ok() && found == text.as_bytes()
-}
-
-/// The lines of rows, each with its time in the scene's own unit [s] if there is one, without some columns; or which
-/// number is not finite.
-fn encode<R: TableRow>(
-    rows: impl IntoIterator<Item = R>,
-    unit: Option<f64>,
-    without: &[&str],
-) -> Result<Vec<u8>, String> {
+/// The lines of rows, each with its time in the scene's own unit [s] if there is one; or which number is not finite.
+fn encode<R: TableRow>(rows: impl IntoIterator<Item = R>, unit: Option<f64>) -> Result<Vec<u8>, String> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     for mut row in rows {
         let mut in_units = unit.map(|unit| row.number("time").expect("every row has its time") / unit);
         if let Some(what) = no_number(&row) {
             return Err(what);
         }
-        let columns = row.columns().into_iter().filter(|(name, _)| !without.contains(name));
-        let entries: Vec<CellValue> =
-            columns.map(|(_, entry)| entry).chain(in_units.as_mut().map(CellValue::Number)).collect();
+        let columns = row.columns().into_iter().map(|(_, entry)| entry);
+        let entries: Vec<CellValue> = columns.chain(in_units.as_mut().map(CellValue::Number)).collect();
         writer.serialize(entries).expect("entries are numbers and names");
     }
     Ok(writer.into_inner().expect("a vector takes all bytes"))
@@ -314,8 +282,7 @@ fn no_number<R: TableRow>(row: &R) -> Option<String> {
     Some(format!("`{column}` ({})", told.join(", ")))
 }
 
-/// All whole rows of a table. Columns are found by their names, and others passed over; those that an earlier version
-/// did not write are nothing.
+/// All whole rows of a table. Columns are found by their names, and others passed over.
 ///
 /// # Errors
 /// The file is missing or is not a table of such rows. A last line that is cut short is ignored:
@@ -332,18 +299,12 @@ pub(super) fn read_rows<R: TableRow>(path: &Path) -> Result<Vec<R>, ReadError> {
         let mut row = R::default();
         let place = |(name, _): (&str, CellValue)| {
             let found = header.iter().position(|found| found == name);
-            match found {
-                None if !R::LATER.contains(&name) => {
-                    Err(ReadProblem::Layout(format!("it has no column `{name}`")))
-                }
-                found => Ok(found),
-            }
+            found.ok_or_else(|| ReadProblem::Layout(format!("it has no column `{name}`")))
         };
-        let places: Vec<Option<usize>> = row.columns().into_iter().map(place).collect::<Result<_, _>>()?;
+        let places: Vec<usize> = row.columns().into_iter().map(place).collect::<Result<_, _>>()?;
         let read = |record: csv::Result<csv::StringRecord>| {
             let record = record?;
             for ((name, entry), &place) in row.columns().into_iter().zip(&places) {
-                let Some(place) = place else { continue };
                 let (line, text) = (record.position().map_or(0, csv::Position::line), &record[place]);
                 entry.take(text).map_err(|allowed| {
                     ReadProblem::Layout(format!("line {line}: found `{text}` as {name}; allowed: {allowed}"))
@@ -451,8 +412,7 @@ mod tests {
         let sheet = Sheet { path: path.clone(), file: full };
         let mut table = CsvTable::<FieldPlace> {
             writer: Writer::start(sheet, &path, &Arc::default()).unwrap(),
-            header: 0,
-            without: &[],
+            header: FileSum::default(),
             unit: None,
             row: PhantomData,
         };

@@ -119,10 +119,10 @@ impl Verified {
     }
 }
 
-/// How long the table of fringes is, among what is kept of the camera's film.
+/// What is in the table of fringes, among what is kept of the camera's film.
 #[derive(Default, Serialize, Deserialize)]
-struct FringesLength {
-    table: u64,
+struct FringesTable {
+    table: FileSum,
 }
 
 /// What a checkpoint knows of files.
@@ -147,24 +147,19 @@ impl Sums {
                 sums.tables.insert(folder.join(name), sum);
             }
         }
-        let (mut fringes, mut sum) = (FringesLength::default(), None);
-        let known = memory
-            .part(FRINGES, |memory| Ok(memory.keep("film", &mut fringes)? && memory.keep("sum", &mut sum)?));
-        if known.map_err(unreadable)?
-            && let Some(crc) = sum
-        {
-            sums.tables.insert(folder.join(FRINGES_TABLE), FileSum { bytes: fringes.table, crc });
+        let mut fringes = FringesTable::default();
+        if memory.part(FRINGES, |memory| memory.keep("film", &mut fringes)).map_err(unreadable)? {
+            sums.tables.insert(folder.join(FRINGES_TABLE), fringes.table);
         }
         for name in [PARTICLES, SURFACES, GRID, FRINGES] {
-            let mut files: Vec<Option<FileSum>> = Vec::new();
+            let mut files: Vec<FileSum> = Vec::new();
             memory.part(name, |memory| memory.keep("sums", &mut files)).map_err(unreadable)?;
             let series = SeriesFiles::find(folder, name, SeriesFormat::Vtu);
             let path = |number: usize| match name {
                 FRINGES => picture(folder, number),
                 _ => series.path(number),
             };
-            let known = files.into_iter().enumerate().filter_map(|(number, sum)| Some((path(number), sum?)));
-            sums.files.extend(known);
+            sums.files.extend(files.into_iter().enumerate().map(|(number, sum)| (path(number), sum)));
         }
         Ok(sums)
     }

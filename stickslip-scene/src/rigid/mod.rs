@@ -49,7 +49,6 @@ pub struct RigidState {
     velocity: [f64; 3],
     spin: [f64; 3],
     /// Momenta of a free one.
-    #[serde(default)]
     free: Option<FreeState>,
 }
 

@@ -68,7 +68,6 @@ pub struct HealthRule {
     /// What to do beyond the bound.
     pub then: Response,
     /// The bound, if it is not the usual one: see [`Scene::health_bound`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
 }
 
@@ -161,11 +160,6 @@ impl Health {
     /// What to do where a check finds something.
     pub fn response(&self, check: HealthCheck) -> Response {
         self.rules.get(&check).map_or(check.usual_response(), |rule| rule.then)
-    }
-
-    /// Whether the scene says nothing: such a record has none of it.
-    pub(super) fn is_usual(&self) -> bool {
-        *self == Self::default()
     }
 }
 

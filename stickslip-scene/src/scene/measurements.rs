@@ -16,19 +16,14 @@ pub struct Measurements {
     /// Fronts whose position is recorded.
     pub fronts: Vec<Front>,
     /// Planes through which forces and moments are recorded.
-    #[serde(default)]
     pub sections: Vec<Section>,
     /// Faces of the domain, by the words of [`FACES`], and rigid bodies by their names, on which forces are recorded.
-    #[serde(default)]
     pub reactions: Vec<String>,
     /// Bodies whose sums are recorded.
-    #[serde(default)]
     pub groups: Vec<Group>,
     /// Packings whose stress and fabric are recorded.
-    #[serde(default)]
     pub fabric: Vec<Fabric>,
     /// Points of contact whose pressure and shear are recorded.
-    #[serde(default)]
     pub tractions: Option<Tractions>,
 }
 

@@ -91,7 +91,6 @@ pub struct Scene {
     /// What slows the bodies down beside contact and materials.
     pub damping: Damping,
     /// What a run watches, and what it does where something is wrong.
-    #[serde(skip_serializing_if = "Health::is_usual")]
     pub health: Health,
     /// Acceleration of every body.
     pub gravity: Gravity,
@@ -245,16 +244,10 @@ pub struct Discretization {
     /// Shape functions.
     pub basis: BasisKind,
     /// Where bodies that deform and do not say so are computed.
-    #[serde(skip_serializing_if = "is_grid")]
     pub interior: Interior,
     /// Why that was chosen, where the scene leaves it open.
     #[serde(skip)]
     pub because: Option<String>,
-}
-
-/// Whether bodies are on the grid: a record of a scene does not say so.
-fn is_grid(interior: &Interior) -> bool {
-    *interior == Interior::Grid
 }
 
 /// A box that holds all material.
@@ -373,12 +366,7 @@ pub struct NamedMaterial {
     /// Whether its particles change their volume each by itself.
     pub volume_change: VolumeChange,
     /// alpha, by how much it grows in every direction without stress, for each kelvin [1/K].
-    #[serde(skip_serializing_if = "is_zero")]
     pub thermal_expansion: f64,
-}
-
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 /// A body: a shape filled with a material, and how it moves at the start.
@@ -395,7 +383,6 @@ pub struct Body {
     /// Particles along each side of a cell, where it has not those of the scene.
     pub particles_per_side: Option<usize>,
     /// Where it is computed, if not where those of the scene are; see [`Scene::interior`].
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub interior: Option<Interior>,
     /// Side of the cells of its own grid, where it is not that of the scene's [m]; see [`Scene::cell`].
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -405,7 +392,6 @@ pub struct Body {
     /// Cauchy stress before anything moves, by the place: xx, yy, zz, xy, yz, xz, tension positive [Pa]; `None`: none.
     pub stress: Option<Box<[Expression; 6]>>,
     /// Velocity at the start by the place, of a body that deforms, beside that of `motion` [m/s]; `None`: none.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity_by_place: Option<Box<[Expression; 3]>>,
 }
 
@@ -465,7 +451,6 @@ pub struct ContactRule {
     /// Speed of slip over which friction falls from the one to the other [m/s]; 0: as soon as they slip.
     pub friction_decay_speed: f64,
     /// How friction follows a change of pressure; `None`: at once.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_memory: Option<FrictionMemory>,
     /// Shear strength of the contact beside friction [Pa].
     pub cohesion: f64,
@@ -481,7 +466,6 @@ pub struct ContactRule {
     /// which they met, 0 to 1.
     pub restitution: f64,
     /// How bodies that overlap at the start are pressed apart; `None`: they are not, and the overlap stays as it is.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub press: Option<Press>,
 }
 

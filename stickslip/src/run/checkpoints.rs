@@ -314,8 +314,6 @@ fn first_difference<'a>(key: String, then: &'a Value, now: &'a Value) -> Option<
             names.into_iter().find_map(|name| match (a.get(name), b.get(name)) {
                 (Some(then), Some(now)) => first_difference(place(name), then, now),
                 _ if FREE.contains(&place(name).as_str()) => None,
-                // What only one version of the program knows, and the scene does not ask for.
-                (None, Some(value)) | (Some(value), None) if says_nothing(value) => None,
                 (then, now) => Some((place(name), then, now)),
             })
         }
@@ -334,24 +332,8 @@ fn first_difference<'a>(key: String, then: &'a Value, now: &'a Value) -> Option<
             let new = || b.iter().find(|item| lacks(a, item)).map(|item| (place(item), None, Some(item)));
             gone.or_else(new).or(Some((key, Some(then), Some(now))))
         }
-        // Earlier versions recorded the names of files alone.
-        (Value::String(name), Value::Object(shape))
-            if shape.get("file").and_then(Value::as_str) == Some(name) =>
-        {
-            None
-        }
         _ if then == now => None,
         _ => Some((key, Some(then), Some(now))),
-    }
-}
-
-/// Whether a value stands for what is not there.
-fn says_nothing(value: &Value) -> bool {
-    match value {
-        Value::Null | Value::Bool(false) => true,
-        Value::Array(list) => list.is_empty(),
-        Value::Object(map) => map.values().all(says_nothing),
-        _ => false,
     }
 }
 
@@ -374,11 +356,6 @@ mod tests {
         assert_eq!(with("/bodies/0/name", json!("b")), Some("bodies[0].name".to_string()));
         assert_eq!(with("/bodies", json!([])), Some("bodies[\"a\"]".to_string()));
         assert_eq!(with("/bodies", json!([1, 2])), Some("bodies[\"a\"]".to_string()));
-        assert_eq!(with("/time", json!({"courant": 0.4, "later": null, "keys": {"of": []}})), None);
-        assert_eq!(with("/time", json!({"courant": 0.4, "later": 1})), Some("time.later".to_string()));
-        let [earlier, other] = ["a.stl", "b.stl"].map(|file| json!({"mesh": file}));
-        let now = json!({"mesh": {"file": "a.stl", "sha256": "00"}});
-        assert!(first_difference(String::new(), &earlier, &now).is_none());
-        assert!(first_difference(String::new(), &other, &now).is_some());
+        assert_eq!(with("/time", json!({"courant": 0.4, "more": 1})), Some("time.more".to_string()));
     }
 }

@@ -26,7 +26,6 @@ pub struct TouchForce {
     /// On the first body [N].
     pub force: [f64; 3],
     /// How fast the surfaces slipped at the end of the step; 0 where they stuck [m/s].
-    #[serde(default)]
     pub slip: f64,
 }
 

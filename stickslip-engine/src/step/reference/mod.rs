@@ -119,7 +119,6 @@ pub struct Layers {
     /// Energy that its part of the layers stores [J].
     energy: f64,
     /// Whether it begins with the stress of another run, and what it touches is pressed as deep as it lies there.
-    #[serde(default)]
     carried: bool,
     /// For how long its steps are as short as in contact yet [s]: a surface that bounces off and on under steps that
     /// jump takes energy from nowhere.
@@ -136,7 +135,6 @@ pub(crate) struct SavedNodes {
     forces: Vec<f64>,
     layers: Layers,
     /// None where nothing relaxes.
-    #[serde(default)]
     accelerations: Vec<f64>,
 }
 

@@ -8,8 +8,6 @@
 //! where the head lies as u64, little-endian
 //! SHA-256 of all that but the sections
 //! ```
-//! That is version 3. Earlier versions have no sections, but a map with all of it in the place of the head, and a sum
-//! of all bytes; in version 2 the map is packed.
 
 mod sections;
 
@@ -18,8 +16,7 @@ pub(super) use sections::{MOST_PARTICLES, Section};
 
 use super::CHECKPOINTS;
 use super::file::{
-    OutputError, ReadError, ReadProblem, open_file, read_bytes, replace_by, replace_for_good, secure_name,
-    whole_name,
+    OutputError, ReadError, ReadProblem, open_file, replace_by, replace_for_good, secure_name, whole_name,
 };
 use super::folder::OutputFolder;
 use super::manifest::SceneRecord;
@@ -46,7 +43,6 @@ pub struct Checkpoint {
     /// How far outputs and checks have come.
     memory: Values,
     /// Where particles lie that are not in the state.
-    #[serde(default)]
     sections: Vec<Section>,
 }
 
@@ -61,12 +57,10 @@ pub enum CheckpointForm {
 
 /// The beginning of every checkpoint.
 const MAGIC: &[u8; 21] = b"stickslip checkpoint\0";
-/// Version of the format, and earlier ones, by whether the map is packed.
-const VERSION: u32 = 3;
-const PLAIN: u32 = 1;
-const COMPRESSED: u32 = 2;
-/// No later version will ever be above this.
-const LATER: u32 = 1 << 16;
+/// Version of the format.
+const VERSION: u32 = 4;
+/// No version will ever be above this.
+const LAST: u32 = 1 << 16;
 /// Bytes that one of a packed map may stand for, so that no file takes memory out of proportion to its size; a map that
 /// would be smaller is written as it is.
 const MOST_COMPRESSED: u64 = 50;
@@ -169,7 +163,7 @@ impl Checkpoint {
     /// Reads one, with all its particles.
     ///
     /// # Errors
-    /// It is missing, damaged, of a later version, or no checkpoint.
+    /// It is missing, damaged, of another version of the format, or no checkpoint.
     pub fn read(path: &Path) -> Result<Self, ReadError> {
         let mut checkpoint = Self::open(path)?;
         checkpoint.fill(path)?;
@@ -179,7 +173,7 @@ impl Checkpoint {
     /// Reads all that one has but particles, and looks whether these are there as they were written.
     ///
     /// # Errors
-    /// It is missing, damaged, of a later version, or no checkpoint.
+    /// It is missing, damaged, of another version of the format, or no checkpoint.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let open = || -> Result<Checkpoint, ReadProblem> {
             let mut file = open_file(path)?;
@@ -193,11 +187,10 @@ impl Checkpoint {
             }
             let version = line[MAGIC.len()..].try_into().map(u32::from_le_bytes).unwrap_or_default();
             match version {
-                VERSION => Self::open_sections(&mut file, length),
-                PLAIN | COMPRESSED => Self::of_whole(version, &read_bytes(path)?),
-                version if version > LATER => Err(damaged()),
+                VERSION => Self::open_head(&mut file, length),
+                version if version > LAST => Err(damaged()),
                 _ => {
-                    let known = format!("this program reads {PLAIN} to {VERSION}");
+                    let known = format!("this program reads version {VERSION}");
                     Err(layout(&format!("it is of version {version} of the format; {known}")))
                 }
             }
@@ -205,8 +198,8 @@ impl Checkpoint {
         open().map_err(|problem| problem.at(path))
     }
 
-    /// One with sections, of a file of this length.
-    fn open_sections(file: &mut File, length: u64) -> Result<Self, ReadProblem> {
+    /// All but particles, of a file of this length.
+    fn open_head(file: &mut File, length: u64) -> Result<Self, ReadProblem> {
         const END: usize = size_of::<u8>() + size_of::<u64>() + SUM;
         let mut end = [0; END];
         file.seek(SeekFrom::Start(length.saturating_sub(END as u64)))?;
@@ -239,18 +232,6 @@ impl Checkpoint {
         if begin == place { Ok(checkpoint) } else { Err(damaged()) }
     }
 
-    /// One without sections.
-    fn of_whole(version: u32, bytes: &[u8]) -> Result<Self, ReadProblem> {
-        let (content, sum) = bytes.split_at(bytes.len().saturating_sub(SUM));
-        if content.len() < START || Sha256::digest(content)[..] != *sum {
-            return Err(damaged());
-        }
-        let map = &content[START..];
-        let whole: Checkpoint = sections::unpacked((version == COMPRESSED, map))?;
-        // Only later ones have any.
-        Ok(Checkpoint { sections: Vec::new(), ..whole })
-    }
-
     /// Gives the state the particles that it has in sections.
     ///
     /// # Errors
@@ -275,7 +256,7 @@ impl Checkpoint {
         fill().map_err(|problem| problem.at(path))
     }
 
-    /// Where the particles lie that the state does not have; none of earlier versions, whose state has all.
+    /// Where the particles lie, if there are any.
     pub fn particles(&self, path: &Path) -> Option<ParticlesThere> {
         (!self.sections.is_empty()).then(|| ParticlesThere::in_sections(path, &self.sections))
     }
@@ -479,8 +460,10 @@ mod tests {
     use flate2::Compression;
     use flate2::write::ZlibEncoder;
 
-    fn file(version: u32, map: &[u8]) -> Vec<u8> {
-        let mut bytes = [&MAGIC[..], &version.to_le_bytes(), map].concat();
+    /// One without sections, with a head that is packed.
+    fn file(version: u32, head: &[u8]) -> Vec<u8> {
+        let place = (START as u64).to_le_bytes();
+        let mut bytes = [&MAGIC[..], &version.to_le_bytes(), head, &[1], &place].concat();
         let sum = Sha256::digest(&bytes);
         bytes.extend(sum);
         bytes
@@ -505,11 +488,12 @@ mod tests {
         let many = [&[0xdd, 0x00, 0x0f, 0x42, 0x40][..], &[0; 1_000_000]].concat();
         let whole = zipped(&many);
         assert!(many.len() > 100 * whole.len());
-        for map in [&b"no zlib"[..], &[], &whole, &whole[..whole.len() / 2], &zipped(b"\xc0")] {
-            fs::write(&path, file(COMPRESSED, map)).unwrap();
-            assert!(refused(&path).contains("it is damaged"), "{}", refused(&path));
+        for head in [&b"no zlib"[..], &[], &whole, &whole[..whole.len() / 2], &zipped(b"\xc0")] {
+            fs::write(&path, file(VERSION, head)).unwrap();
+            let told = refused(&path);
+            assert!(told.contains("it is damaged") && !told.contains("do not add up"), "{told}");
         }
-        fs::write(&path, file(4, &whole)).unwrap();
-        assert!(refused(&path).contains("this program reads 1 to 3"), "{}", refused(&path));
+        fs::write(&path, file(VERSION + 1, &whole)).unwrap();
+        assert!(refused(&path).contains("this program reads version"), "{}", refused(&path));
     }
 }

@@ -22,13 +22,11 @@ pub(super) struct SpinCheck {
 struct Alone {
     body: usize,
     /// At the start.
-    #[serde(default)]
     mass: f64,
     velocity: [f64; 3],
     angular_momentum: [f64; 3],
     time: f64,
     /// How often values had been written to it.
-    #[serde(default)]
     written: u64,
 }
 
