@@ -1,11 +1,11 @@
-//! Folders of results: the record of a run, tables, snapshots and their list, by the readers of `render`, `plot`,
-//! `network`, `view` and the library.
+//! Folders of results: the record of a run, tables, snapshots and their list, by the readers of `render`, `plot`, `view`
+//! and the library.
 
 use crate::is_one_in;
 use crate::template::Template;
 use std::path::Path;
 use std::sync::OnceLock;
-use stickslip::observe::{Manifest, Network, ParticleFile, Results, read_columns};
+use stickslip::observe::{Manifest, ParticleFile, Results, read_columns};
 use stickslip_cli::door::{PORT, Viewer, ask};
 
 /// One input of so many is drawn, too: pictures take a thousand times as long as reading. What is found by drawing is
@@ -95,11 +95,7 @@ pub fn tables(bytes: &[u8]) {
     template.with(TABLES[which], rows, |folder| {
         match which {
             0..=2 => {
-                let network = Network::read(results, Some(0.01)).and_then(|_| Network::read(results, None));
-                if let Ok(network) = network {
-                    std::hint::black_box(network.coordination());
-                    network.write(Vec::new()).expect("memory takes all");
-                }
+                let _ = std::hint::black_box((results.bodies_table(), results.contacts_table()));
                 view(folder, &["/energy", "/body/1", "/contacts/0", "/contacts/2"]);
             }
             3 => drop(results.loads_table()),
@@ -123,7 +119,6 @@ pub fn tables(bytes: &[u8]) {
             ];
             let table = table.get(which).copied().unwrap_or("fronts");
             draw(&["plot", "--table", table], folder, &template.out("t.svg"));
-            draw(&["network", "--time", "0.01"], folder, &template.out("n.graphml"));
         }
     });
 }

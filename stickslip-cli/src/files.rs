@@ -25,7 +25,6 @@ pub const SVG: Kind<'static> = Kind { name: "SVG", start: b"<svg", mark: COMMENT
 pub const PDF: Kind<'static> = Kind { name: "PDF", start: b"%PDF", mark: b"/Producer (Stickslip)" };
 pub const GLB: Kind<'static> =
     Kind { name: "model in glTF", start: b"glTF", mark: stickslip::surface::model::GENERATOR.as_bytes() };
-pub const GRAPHML: Kind<'static> = Kind { name: "GraphML", start: b"<?xml", mark: COMMENT.as_bytes() };
 /// As [`crate::page`] writes them.
 pub const PAGE: Kind<'static> =
     Kind { name: "page in HTML", start: b"<!DOCTYPE html>", mark: COMMENT.as_bytes() };

@@ -65,7 +65,7 @@ case "$1" in
     run) exec "$STICKSLIP" "$@" $coarse --set time.end="$end" --set outputs.particles="$particles" ;;
     bench) exec "$STICKSLIP" "$@" --tiny --only P1 ;;
     # Runs are over before the times of which documents speak.
-    render | network) exec "$STICKSLIP" $(echo "$@" | sed 's/--time [^ ]*//') ;;
+    render) exec "$STICKSLIP" $(echo "$@" | sed 's/--time [^ ]*//') ;;
     *) exec "$STICKSLIP" "$@" $coarse ;;
 esac
 "#;

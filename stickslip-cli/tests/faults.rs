@@ -546,12 +546,13 @@ fn a_flipped_bit_is_found_in_every_kind_of_file() {
     workplace.succeed(&["resume", "out", "--until", "0.09"]);
 }
 
-/// The graph of a table that was cut would be another one.
+/// The chart of a table that was cut would be another one.
 #[test]
 fn a_table_that_was_cut_is_not_taken_for_whole() {
     let workplace = workplace();
     workplace.succeed(&run_into("out"));
-    for name in ["contacts.csv", "bodies.csv"] {
+    for table in ["contacts", "bodies"] {
+        let name = &format!("{table}.csv");
         let path = workplace.path("out").join(name);
         let kept = fs::read(&path).unwrap();
         let line = kept.iter().rposition(|&byte| byte == b'\n').unwrap();
@@ -559,15 +560,16 @@ fn a_table_that_was_cut_is_not_taken_for_whole() {
         // A whole row, half a row, and nearly all.
         for length in [row, row + 5, 200] {
             fs::write(&path, &kept[..length]).unwrap();
-            let ran = workplace.run(&["network", "out"]);
+            let ran = workplace.run(&["plot", "out", "--table", table]);
             assert_eq!(ran.code, Some(2), "{name}: {}{}", ran.stdout, ran.stderr);
             assert!(ran.stderr.contains(name) && ran.stderr.contains("it was cut"), "{}", ran.stderr);
         }
         fs::write(&path, kept).unwrap();
     }
-    workplace.succeed(&["network", "out"]);
+    let plot = ["plot", "out", "--table", "contacts"];
+    workplace.succeed(&plot);
     fs::write(workplace.path("out/contacts.csv"), "garbage").unwrap();
-    let garbage = workplace.run(&["network", "out"]);
+    let garbage = workplace.run(&plot);
     assert_eq!(garbage.code, Some(2), "{}", garbage.stdout);
 }
 

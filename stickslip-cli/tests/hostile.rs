@@ -186,7 +186,7 @@ fn names_in_files_of_particles_have_no_control_characters() {
     assert!(ran.stderr.len() < 20_000, "{} bytes said", ran.stderr.len());
     write("x,y,volume,body", "grain 7");
     assert_eq!(workplace.run(&["run", "scene.toml"]).code, Some(0));
-    assert!(workplace.succeed(&["network", "scene.results", "--out", "n.graphml"]).contains("n.graphml"));
+    assert!(workplace.succeed(&["plot", "scene.results", "--out", "plot.svg"]).contains("plot.svg"));
 }
 
 #[test]
@@ -248,7 +248,6 @@ fn control_characters_in_results_do_not_reach_files_and_terminals() {
     for (words, out) in [
         (&["plot", "scene.results", "--out", "plot.svg"][..], Some("plot.svg")),
         (&["plot", "scene.results", "--out", "plot.pdf"], None),
-        (&["network", "scene.results", "--out", "n.graphml"], Some("n.graphml")),
         (&["render", "scene.results"], None),
         (&["resume", "scene.results", "--until", "1 ms"], None),
     ] {
@@ -259,11 +258,9 @@ fn control_characters_in_results_do_not_reach_files_and_terminals() {
         }
     }
     replace("bodies.csv", ",disk,", ",di\u{1b}[31msk,");
-    for words in [&["network", "scene.results"][..], &["plot", "scene.results"]] {
-        let ran = workplace.run(words);
-        refused(&ran, "a name without control characters");
-        assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
-    }
+    let ran = workplace.run(&["plot", "scene.results"]);
+    refused(&ran, "a name without control characters");
+    assert!(!ran.stderr.contains('\u{1b}'), "{:?}", ran.stderr);
 }
 
 #[test]
@@ -317,23 +314,21 @@ fn a_million_frames_are_the_most() {
 fn times_that_were_not_recorded_are_refused() {
     let workplace = workplace();
     assert_eq!(run(&workplace, &[]).code, Some(0));
-    for command in ["render", "network"] {
-        for time in ["1e300", "nan", "inf", "-1"] {
-            refused(&workplace.run(&[command, "scene.results", "--time", time]), "allowed: 0 s to 0.02 s");
-        }
-        assert_eq!(workplace.run(&[command, "scene.results", "--time", "0.02"]).code, Some(0));
+    for time in ["1e300", "nan", "inf", "-1"] {
+        refused(&workplace.run(&["render", "scene.results", "--time", time]), "allowed: 0 s to 0.02 s");
     }
+    assert_eq!(workplace.run(&["render", "scene.results", "--time", "0.02"]).code, Some(0));
 }
 
 #[test]
 fn files_of_others_are_not_replaced() {
     let workplace = workplace();
     assert_eq!(run(&workplace, &[]).code, Some(0));
-    for name in ["thesis.graphml", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
+    for name in ["thesis.gif", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
         workplace.write(name, "years of work");
     }
     for arguments in [
-        &["network", "scene.results", "--out", "thesis.graphml"][..],
+        &["render", "scene.results", "--animate", "--out", "thesis.gif"][..],
         &["render", "scene.results", "--out", "thesis.png"],
         &["render", "scene.results", "--animate", "--out", "thesis.png"],
         &["render", "scene.results", "--all", "--out", "."],
@@ -349,12 +344,10 @@ fn files_of_others_are_not_replaced() {
     let mut encoder = png::Encoder::new(&mut png, 1, 1);
     encoder.add_text_chunk("Software".to_owned(), "Camera 1.0".to_owned()).unwrap();
     encoder.write_header().unwrap().write_image_data(&[7]).unwrap();
-    let xml = b"<?xml version=\"1.0\"?>\n<graphml/>\n";
     for (name, bytes, command) in [
         ("own.png", &png[..], "render"),
         ("own.svg", b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>", "plot"),
         ("own.pdf", b"%PDF-1.7\n1 0 obj\n<</Producer (Camera 1.0)>>\n", "plot"),
-        ("own.graphml", xml, "network"),
         ("own.gif", b"GIF89a, and so on", "render --animate"),
     ] {
         fs::write(workplace.path(name), bytes).unwrap();
@@ -379,7 +372,7 @@ fn files_of_others_are_not_replaced() {
         assert_eq!(again.code, Some(2), "{listed}{}", again.stderr);
         assert_eq!(fs::read_to_string(&own).unwrap(), mine);
     }
-    for name in ["thesis.graphml", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
+    for name in ["thesis.gif", "thesis.png", "thesis.svg", "index.html", "picture_00000.png"] {
         assert_eq!(fs::read_to_string(workplace.path(name)).unwrap(), "years of work", "{name}");
     }
 }
@@ -575,7 +568,7 @@ fn nothing_that_a_scene_names_is_written_outside_its_results() {
         workplace.write(&scene, &text);
         let mut expected = below(&workplace.path(""));
         workplace.succeed(&["run", &scene, "--out", &results]);
-        for words in [&["render", &results][..], &["plot", &results], &["network", &results]] {
+        for words in [&["render", &results][..], &["plot", &results]] {
             workplace.succeed(words);
         }
         workplace.succeed(&["render", &results, "--all"]);
@@ -651,7 +644,7 @@ fn a_picture_that_finds_no_space_is_not_there() {
     let workplace = workplace();
     assert_eq!(run(&workplace, &[]).code, Some(0));
     let program = workplace.command(&[]).get_program().to_str().unwrap().to_owned();
-    for (command, name) in [("render", "picture.png"), ("plot", "plot.svg"), ("network", "graph.graphml")] {
+    for (command, name) in [("render", "picture.png"), ("plot", "plot.svg")] {
         // Blocks of 1024 bytes.
         let line = format!("ulimit -f 1; exec '{program}' {command} scene.results --out {name}");
         let ran = std::process::Command::new("bash")
@@ -683,7 +676,6 @@ fn files_that_are_called_like_a_part_stay_and_links_are_not_followed() {
     for (command, name) in [
         (&["render"][..], "picture.png"),
         (&["plot"], "plot.svg"),
-        (&["network"], "graph.graphml"),
         (&["view", "--html"], "page.html"),
         (&["render", "--animate"], "film.gif"),
     ] {

@@ -11,6 +11,7 @@ refuses files without points; it knows no polygons (`.vtp`), for which a run can
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import stickslip as ss
-from conftest import flying, rings
+from conftest import REPOSITORY, flying, rings
 
 Found = tuple[np.ndarray, dict[str, np.ndarray], dict[str, np.ndarray]]
 """Points, cells by their kind, arrays of the points by their names."""
@@ -260,6 +261,22 @@ def test_tables_and_snapshots_are_datasets_of_xarray(results):
     particles = frame.to_xarray()
     assert particles.attrs["time"] == 0.01 and particles["stress"].attrs == {"unit": "Pa"}
     assert np.array_equal(particles["stress"], frame["stress"])
+
+
+def test_contacts_are_a_graph_of_networkx(tmp_path):
+    networkx = pytest.importorskip("networkx")
+    pytest.importorskip("pandas")
+    chapter = (REPOSITORY / "book/15-python.md").read_text()
+    (lines,) = re.findall(r"```text\n(graph = .*?)```", chapter, re.DOTALL)
+    rows = [(0.5, "a", "b", 2.0), (0.5, "c", "b", 3.0)]
+    kinds = [("time", float), ("body_a", "U1"), ("body_b", "U1"), ("normal", float)]
+    now = ss.Table.of(np.array(rows, dtype=kinds))
+    exec(lines.replace("contacts.graphml", str(tmp_path / "contacts.graphml")), dict(networkx=networkx, now=now))
+    graph = networkx.read_graphml(tmp_path / "contacts.graphml")
+    assert dict(graph.edges) == {
+        ("a", "b"): dict(time=0.5, normal=2.0),
+        ("c", "b"): dict(time=0.5, normal=3.0),
+    }
 
 
 def test_a_chart_is_drawn_by_matplotlib(results, tmp_path):

@@ -6,7 +6,6 @@ mod completions;
 mod fringes;
 mod gallery;
 mod manual;
-mod network;
 mod new;
 mod plot;
 mod render;
@@ -45,7 +44,6 @@ pub enum Command {
     Gallery(gallery::Arguments),
     Render(Box<render::Arguments>),
     Plot(plot::Arguments),
-    Network(network::Arguments),
     Reproduce(reproduce::Arguments),
     Schema(schema::Arguments),
     Completions(completions::Arguments),
@@ -95,7 +93,6 @@ impl Command {
             Command::Gallery(arguments) => arguments.execute(),
             Command::Render(arguments) => arguments.execute(),
             Command::Plot(arguments) => arguments.execute(),
-            Command::Network(arguments) => arguments.execute(),
             Command::Reproduce(arguments) => arguments.execute(),
             Command::Schema(arguments) => arguments.execute(),
             Command::Completions(arguments) => arguments.execute(),

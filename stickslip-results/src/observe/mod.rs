@@ -25,7 +25,6 @@ mod linear_fit;
 mod loads;
 mod manifest;
 mod memory;
-mod network;
 mod particle_file;
 mod particles;
 mod pieces;
@@ -70,7 +69,6 @@ pub use manifest::{
     as_text,
 };
 pub use memory::Memory;
-pub use network::Network;
 pub use particle_file::{FileColumn, ParticleFile};
 pub use particles::{FileColumns, encode_particles, read_columns, read_particles};
 pub use points::PointSample;
