@@ -22,7 +22,6 @@ pub const COMMENT: &str = "<!-- Stickslip -->";
 
 pub const PNG: Kind<'static> = Kind { name: "PNG", start: b"\x89PNG", mark: b"Software\0Stickslip" };
 pub const SVG: Kind<'static> = Kind { name: "SVG", start: b"<svg", mark: COMMENT.as_bytes() };
-pub const PDF: Kind<'static> = Kind { name: "PDF", start: b"%PDF", mark: b"/Producer (Stickslip)" };
 pub const GLB: Kind<'static> =
     Kind { name: "model in glTF", start: b"glTF", mark: stickslip::surface::model::GENERATOR.as_bytes() };
 /// As [`crate::page`] writes them.

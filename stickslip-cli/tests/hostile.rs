@@ -247,7 +247,7 @@ fn control_characters_in_results_do_not_reach_files_and_terminals() {
     replace("run.json", "disk", "di\\u001b[31msk");
     for (words, out) in [
         (&["plot", "scene.results", "--out", "plot.svg"][..], Some("plot.svg")),
-        (&["plot", "scene.results", "--out", "plot.pdf"], None),
+        (&["plot", "scene.results", "--out", "plot.png"], None),
         (&["render", "scene.results"], None),
         (&["resume", "scene.results", "--until", "1 ms"], None),
     ] {
@@ -347,7 +347,6 @@ fn files_of_others_are_not_replaced() {
     for (name, bytes, command) in [
         ("own.png", &png[..], "render"),
         ("own.svg", b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>", "plot"),
-        ("own.pdf", b"%PDF-1.7\n1 0 obj\n<</Producer (Camera 1.0)>>\n", "plot"),
         ("own.gif", b"GIF89a, and so on", "render --animate"),
     ] {
         fs::write(workplace.path(name), bytes).unwrap();

@@ -1,7 +1,7 @@
-//! A chart on paper: PNG, SVG or PDF.
+//! A chart on paper: PNG or SVG.
 
 use super::{Chart, Curve, Panel};
-use crate::drawing::{Canvas, DrawError, PdfPage, Prefix, axis_prefix, label, register_font, save};
+use crate::drawing::{Canvas, DrawError, Prefix, axis_prefix, label, register_font, save};
 use crate::files;
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
@@ -18,22 +18,15 @@ const MARKS: usize = 6;
 /// Curves of so few points have them marked.
 const FEW: usize = 12;
 
-/// Draws a chart into a file of this width and height in pixels; a name that ends in `.svg` gives SVG, in
-/// `.pdf` PDF, any other PNG.
+/// Draws a chart into a file of this width and height in pixels; a name that ends in `.svg` gives SVG, any other PNG.
 ///
 /// # Errors
 /// The file cannot be written, or no panel has a curve.
 pub fn draw(chart: &Chart, path: &Path, size: [usize; 2]) -> Result<(), DrawError> {
-    let is = |kind: &str| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(kind));
-    let written = |kind, bytes: &[u8]| {
-        files::write(path, kind, |file| file.write_all(bytes))
-            .map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
-    };
-    if is("svg") {
-        return written(files::SVG, svg(chart, size)?.as_bytes());
-    }
-    if is("pdf") {
-        return written(files::PDF, &pdf(chart, size)?);
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
+        let text = svg(chart, size)?;
+        return files::write(path, files::SVG, |file| file.write_all(text.as_bytes()))
+            .map_err(|source| DrawError::Write { path: path.to_path_buf(), source });
     }
     something(chart)?;
     let mut canvas = Canvas::new(size, SAMPLES);
@@ -56,16 +49,6 @@ pub fn svg(chart: &Chart, size: [usize; 2]) -> Result<String, DrawError> {
     let inside = text.find('>').map_or(0, |end| end + 1);
     text.insert_str(inside, files::COMMENT);
     Ok(text)
-}
-
-/// A chart of this width and height as the bytes of a PDF file.
-fn pdf(chart: &Chart, size: [usize; 2]) -> Result<Vec<u8>, DrawError> {
-    something(chart)?;
-    let mut sheet = PdfPage::new(size);
-    let area = sheet.backend().into_drawing_area();
-    page(&area, chart, 1)?;
-    drop(area);
-    sheet.finish()
 }
 
 /// An error if there is nothing to see in a chart.
@@ -254,19 +237,17 @@ mod tests {
     }
 
     #[test]
-    fn a_chart_becomes_png_svg_and_pdf() {
+    fn a_chart_becomes_png_and_svg() {
         let folder = tempfile::tempdir().unwrap();
         let keep = std::env::var_os("STICKSLIP_TEST_PICTURES").map(std::path::PathBuf::from);
         let folder = keep.as_deref().unwrap_or(folder.path());
         draw(&chart(), &folder.join("chart.png"), [1280, 560]).unwrap();
-        draw(&chart(), &folder.join("chart.svg"), [1280, 560]).unwrap();
-        let svg = std::fs::read_to_string(folder.join("chart.svg")).unwrap();
+        draw(&chart(), &folder.join("chart.SVG"), [1280, 560]).unwrap();
+        let svg = std::fs::read_to_string(folder.join("chart.SVG")).unwrap();
         assert!(svg.contains("velocity [m/s]") && svg.contains("</svg>"));
-        draw(&chart(), &folder.join("chart.PDF"), [1280, 560]).unwrap();
-        assert!(std::fs::read(folder.join("chart.PDF")).unwrap().starts_with(b"%PDF-"));
         let png = std::fs::read(folder.join("chart.png")).unwrap();
         assert_eq!(&png[1..4], b"PNG");
-        for name in ["chart.png", "chart.svg", "chart.PDF"] {
+        for name in ["chart.png", "chart.SVG"] {
             draw(&chart(), &folder.join(name), [1280, 560]).expect("its own it replaces");
         }
     }

@@ -28,8 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
-    /// Draw to this file how a step would scale to many ranks by the model that problem P7 is fitted with: SVG, PNG or
-    /// PDF.
+    /// Draw to this file how a step would scale to many ranks by the model that problem P7 is fitted with: SVG or PNG.
     #[arg(long, value_name = "FILE")]
     draw: Option<PathBuf>,
 

@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(long = "quantity", value_name = "COLUMN", value_delimiter = ',')]
     quantities: Vec<String>,
 
-    /// The chart, .png, .svg or .pdf; DIR/plot.png without this, of several runs plot.png here.
+    /// The chart, .png or .svg; DIR/plot.png without this, of several runs plot.png here.
     #[arg(long, value_parser = chart_file)]
     out: Option<PathBuf>,
 }
@@ -39,14 +39,14 @@ pub struct Arguments {
 fn chart_file(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let known = ["png", "svg", "pdf"].iter().any(|known| extension.eq_ignore_ascii_case(known));
-    if known { Ok(path) } else { Err("allowed: a file name that ends in .png, .svg or .pdf".to_owned()) }
+    let known = ["png", "svg"].iter().any(|known| extension.eq_ignore_ascii_case(known));
+    if known { Ok(path) } else { Err("allowed: a file name that ends in .png or .svg".to_owned()) }
 }
 
 #[test]
-fn charts_are_png_svg_or_pdf() {
-    assert!(chart_file("a/b.SVG").is_ok() && chart_file("b.png").is_ok() && chart_file("b.pdf").is_ok());
-    assert!(chart_file("b.eps").is_err() && chart_file("b").is_err());
+fn charts_are_png_or_svg() {
+    assert!(chart_file("a/b.SVG").is_ok() && chart_file("b.png").is_ok());
+    assert!(chart_file("b.pdf").is_err() && chart_file("b").is_err());
 }
 
 impl Arguments {

@@ -122,17 +122,12 @@ pub fn save(image: &Image, path: &Path) -> Result<(), DrawError> {
         .map_err(|source| DrawError::Write { path: path.to_path_buf(), source })
 }
 
-/// DejaVu Sans, and the bold one. Never inlined, or the program has a copy of both for each use.
-#[inline(never)]
-pub fn fonts() -> [&'static [u8]; 2] {
-    [dejavu::sans::regular(), dejavu::sans::bold()]
-}
-
 /// Makes the embedded DejaVu Sans known as `sans-serif`, so that no font need be installed.
 pub fn register_font() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        for (style, bytes) in [FontStyle::Normal, FontStyle::Bold].into_iter().zip(fonts()) {
+        let (normal, bold) = (dejavu::sans::regular(), dejavu::sans::bold());
+        for (style, bytes) in [(FontStyle::Normal, normal), (FontStyle::Bold, bold)] {
             let registered = plotters::style::register_font("sans-serif", style, bytes);
             registered.ok().expect("the embedded font is a valid font");
         }

@@ -3,13 +3,11 @@
 mod background;
 mod canvas;
 mod colors;
-mod pdf;
 mod ticks;
 
 pub use background::Background;
-pub use canvas::{Canvas, Ink, SAMPLES, fonts, register_font, save, without_background};
+pub use canvas::{Canvas, Ink, SAMPLES, register_font, save, without_background};
 pub use colors::{ColorMap, Rgb, Scale, shaded};
-pub use pdf::PdfPage;
 pub use stickslip::surface::body_color;
 pub use ticks::{Prefix, axis_prefix, label, prefix, ticks};
 

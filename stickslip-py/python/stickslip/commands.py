@@ -101,7 +101,7 @@ def plot(
 ) -> Picture:
     """Draws the chart of a run, of several runs or of a sweep: `table="energy"`, `body="ball"`, `quantity="x,y"`.
 
-    `body` is one, or many by a pattern, such as "*" for all; `quantity` takes several with commas. PNG, SVG or PDF, by
+    `body` is one, or many by a pattern, such as "*" for all; `quantity` takes several with commas. PNG or SVG, by
     the name of `out`; without it plot.png, in the folder of a single run. `Results.plot` draws with matplotlib instead.
     """
     folders = [_folder(each) for each in (results, *others)]
