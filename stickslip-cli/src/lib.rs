@@ -1,9 +1,10 @@
 //! The command `stickslip`, for the program of this name, and for others that bring it along, as the Python package
-//! does. What stands in [`door`] is for tests that feed it what nobody means to (`fuzz/`).
+//! does. What stands in [`door`] is for tests that feed it what nobody means to (`fuzz/`), and in [`bench`] for
+//! `stickslip-bench`.
 
 #![deny(clippy::print_stderr, clippy::print_stdout)]
 
-mod bench;
+pub mod bench;
 mod chart;
 mod commands;
 pub mod door;

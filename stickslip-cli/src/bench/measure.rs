@@ -96,6 +96,9 @@ impl BenchSample {
     }
 }
 
+/// The words by which a program starts itself for a measurement, of which it has an [`answer`].
+pub const MEASURE: [&str; 2] = ["bench", "--measure"];
+
 impl Order {
     /// Has a process of its own measure this.
     ///
@@ -105,7 +108,7 @@ impl Order {
         let wrong = |what: &dyn std::fmt::Display| Failure::Run(miette!("cannot measure: {what}"));
         let program = std::env::current_exe().map_err(|error| wrong(&error))?;
         let mut process = Command::new(program)
-            .args(["bench", "--measure"])
+            .args(MEASURE)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

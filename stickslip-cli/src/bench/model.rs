@@ -21,7 +21,7 @@
 use super::problems::BenchScheme;
 
 /// Particles a cell of every problem here.
-const PARTICLES_PER_CELL: f64 = 8.0;
+pub const PARTICLES_PER_CELL: f64 = 8.0;
 const NODE_NUMBERS: f64 = 26.0;
 const NUMBERS_OF_OWN_NODE: f64 = 19.0;
 const ADDS_PER_NODE: f64 = 37.0;
@@ -43,24 +43,6 @@ impl BenchScheme {
             _ => (65.0, NODE_NUMBERS),
         };
         self.number_bytes() * (particle + node / PARTICLES_PER_CELL)
-    }
-
-    /// Bytes that a rank sends in a step at least, of several that share so many particles which fill a cube: the mean
-    /// over ranks. Halving the cube again and again makes faces between ranks, in cells^2:
-    ///
-    /// ```text
-    /// A = 3 s^2 (r^(1/3) - 1),   s: cells along the cube, r: ranks
-    /// ```
-    /// Through a face goes in both directions what tiles give to the nodes that particles of the other side reach, tile
-    /// by tile: as many layers as functions reach beyond a node of a particle's own cell, in each (4 + layers)^2 nodes
-    /// for 4^2 cells, and of each node its momentum twice, its force and its mass.
-    pub fn halo(&self, particles: usize, ranks: usize) -> f64 {
-        let side = (particles as f64 / PARTICLES_PER_CELL).cbrt();
-        let ranks = ranks as f64;
-        let faces = 3.0 * side * side * (ranks.cbrt() - 1.0);
-        let layers = if self.basis == "linear" { 1.0 } else { 2.0 };
-        let nodes = layers * ((4.0 + layers) / 4.0_f64).powi(2);
-        2.0 * faces / ranks * nodes * 10.0 * self.number_bytes()
     }
 
     /// Multiply-adds of a particle and a step.

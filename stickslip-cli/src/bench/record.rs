@@ -1,12 +1,9 @@
 //! What a benchmark found: the JSON file.
 
-use super::goals::Goal;
 use super::limits::Limits;
 use super::measure::BenchSample;
-use super::on_ranks::{OnRanks, WeakScaling};
 use super::problems::BenchCase;
-use super::scaling::StepModel;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// Everything that one call of `stickslip bench` found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -23,18 +20,6 @@ pub struct BenchRecord {
     pub results: Vec<Measured>,
     /// What was left out, and why.
     pub skipped: Vec<Skipped>,
-    /// Problem P6.
-    pub end_to_end: Vec<EndToEnd>,
-    /// Problem P7.
-    pub on_ranks: Vec<OnRanks>,
-    /// Problem P7, growing with the ranks.
-    pub weak_scaling: Vec<WeakScaling>,
-    /// What a step of these takes by the model that was fitted to them.
-    pub models: Vec<StepModel>,
-    /// Other programs on problem P1.
-    pub peers: Vec<PeerResult>,
-    /// Ratios, and what they are to be.
-    pub goals: Vec<Goal>,
 }
 
 /// The machine.
@@ -100,50 +85,6 @@ pub struct Skipped {
     pub case: BenchCase,
     /// Why.
     pub reason: String,
-}
-
-/// A scene run from start to end, with and without outputs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EndToEnd {
-    /// The scene.
-    pub scene: String,
-    /// Threads.
-    pub threads: usize,
-    /// Particles.
-    pub particles: usize,
-    /// Steps.
-    pub steps: u64,
-    /// Wall times with the outputs that the scene asks for [s].
-    pub with_outputs: Vec<f64>,
-    /// Wall times without outputs but the first and last rows [s].
-    pub without_outputs: Vec<f64>,
-    /// The fastest with over the fastest without outputs.
-    pub ratio: f64,
-    /// Wall time with the checks of a run over that without, as the run counts them.
-    pub checks: f64,
-    /// Processor time with a checkpoint each minute of it over that without, by what a checkpoint adds.
-    pub checkpoints: f64,
-}
-
-/// Another program on problem P1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PeerResult {
-    /// The program, and how it is used.
-    pub program: String,
-    /// Its version.
-    pub version: String,
-    /// `linear` or `quadratic`.
-    pub basis: String,
-    /// Threads that it uses.
-    pub threads: usize,
-    /// Particles.
-    pub particles: usize,
-    /// Steps of a repetition.
-    pub steps: u64,
-    /// Particle-steps per core-second of each repetition.
-    pub repetitions: Vec<f64>,
-    /// Wall time until the first step was done: compilation [s].
-    pub first_step: f64,
 }
 
 impl Measured {

@@ -1,16 +1,11 @@
 //! Which problems are measured, one after the other.
 
-use super::end_to_end::wholes;
-use super::goals::{Findings, goals};
 use super::limits::{self, Care};
 use super::measure::{BenchSample, BenchTask, Effort, Order};
 use super::memory;
 use super::multiply_add::instructions;
-use super::on_ranks::{self, OnRanks, WeakScaling};
-use super::peers::Peers;
-use super::problems::{BenchCase, BenchExtent, cases, grown};
+use super::problems::{BenchCase, BenchExtent, cases};
 use super::record::{BenchRecord, Computer, Measured, Skipped};
-use super::scaling::StepModel;
 use crate::failure::Failure;
 use crate::files;
 use crate::tell::tell;
@@ -23,16 +18,34 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 pub struct BenchSuite {
     /// How much of each problem.
     pub extent: BenchExtent,
-    /// `P1` to `P7`; all if empty.
+    /// `P1` to `P5`; all if empty.
     pub only: Vec<String>,
     /// Most threads.
     pub threads: usize,
-    /// Other programs, if they are to be measured too.
-    pub peers: Option<Peers>,
 }
 
 /// Names of the problems.
-pub const PROBLEMS: [&str; 7] = ["P1", "P2", "P3", "P4", "P5", "P6", "P7"];
+pub const PROBLEMS: [&str; 5] = ["P1", "P2", "P3", "P4", "P5"];
+
+/// The name of one of these problems, as a user writes it.
+///
+/// # Errors
+/// It is none of them; those that are allowed.
+pub fn problem_of(problems: &[&str], text: &str) -> Result<String, String> {
+    let name = text.trim().to_uppercase();
+    if problems.contains(&name.as_str()) {
+        Ok(name)
+    } else {
+        Err(format!("allowed: {}", problems.join(", ")))
+    }
+}
+
+#[test]
+fn problems_are_known_by_name() {
+    assert_eq!(problem_of(&PROBLEMS, "p3").as_deref(), Ok("P3"));
+    assert!(problem_of(&PROBLEMS, "P8").unwrap_err().contains("P5"));
+}
+
 /// What a process may need for a particle; a case is left out if the machine does not have so much [bytes].
 const MEMORY: f64 = 1000.0;
 
@@ -40,10 +53,8 @@ impl BenchSuite {
     /// Measures everything, and says on standard error what it is at.
     ///
     /// # Errors
-    /// Other programs cannot be installed, or a measurement fails.
+    /// A measurement fails.
     pub fn run(&self) -> Result<BenchRecord, Failure> {
-        // First what may be missing, then what takes long.
-        let python = self.peers.as_ref().map(Peers::prepare).transpose()?;
         let machine = self.machine();
         #[expect(clippy::disallowed_methods, reason = "a date, not an interval")]
         let now = SystemTime::now();
@@ -54,12 +65,6 @@ impl BenchSuite {
             machine,
             results: Vec::new(),
             skipped: Vec::new(),
-            end_to_end: Vec::new(),
-            on_ranks: Vec::new(),
-            weak_scaling: Vec::new(),
-            models: Vec::new(),
-            peers: Vec::new(),
-            goals: Vec::new(),
         };
         let cases: Vec<BenchCase> = self.cases().collect();
         for compared in cases.chunk_by(BenchCase::is_compared_with) {
@@ -70,40 +75,11 @@ impl BenchSuite {
                 None => record.results.extend(self.measure(compared, &record.machine)?),
             }
         }
-        if self.wants("P6") {
-            for whole in wholes(self.extent) {
-                tell!("P6 {}, with and without outputs ...", whole.name);
-                record.end_to_end.push(whole.measure(self.threads)?);
-            }
-        }
-        if self.wants("P7") {
-            let body = on_ranks::body_elsewhere(self.extent)?;
-            for case in on_ranks::problems(self.extent) {
-                let turns = if self.extent == BenchExtent::Tiny { 1 } else { TURNS_ON_RANKS };
-                let measured = OnRanks::measure(&case, self.effort(), turns)?;
-                let bigger = |times: usize| grown(&case, self.extent, times);
-                let grown = WeakScaling::measure(&case, &bigger, (self.effort(), turns))?;
-                let bodies = measured.first().map_or(0.0, |one| one.bodies as f64 / one.particles as f64);
-                record.models.extend(StepModel::fit(&grown, case.scheme, (bodies, body)));
-                record.on_ranks.extend(measured);
-                record.weak_scaling.extend(grown);
-            }
-        }
-        if let Some((peers, python)) = self.peers.as_ref().zip(python) {
-            record.peers = peers.measure(&python)?;
-        }
-        let findings = Findings {
-            results: &record.results,
-            end_to_end: &record.end_to_end,
-            on_ranks: &record.on_ranks,
-            models: &record.models,
-            peers: &record.peers,
-        };
-        record.goals = goals(findings);
         Ok(record)
     }
 
-    fn wants(&self, problem: &str) -> bool {
+    /// Whether a problem is to be measured.
+    pub fn wants(&self, problem: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|only| only == problem)
     }
 
@@ -127,7 +103,8 @@ impl BenchSuite {
         }
     }
 
-    fn effort(&self) -> Effort {
+    /// How long a case is stepped.
+    pub fn effort(&self) -> Effort {
         match self.extent {
             BenchExtent::Full => Effort { warm_up: 8, repetitions: 5, least: 12, steps: 64, seconds: 15.0 },
             BenchExtent::Quick => Effort { warm_up: 2, repetitions: 3, least: 8, steps: 32, seconds: 1.2 },
@@ -167,7 +144,6 @@ impl BenchSuite {
 /// How often cases that are compared take turns.
 const TURNS: usize = 5;
 const TURNS_OF_QUICK: usize = 2;
-const TURNS_ON_RANKS: usize = 3;
 
 fn order(case: &BenchCase, effort: Effort) -> Order {
     Order {
@@ -192,7 +168,7 @@ fn processor() -> String {
     name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
 }
 
-/// Writes the scene of every case of problems P1 to P5 that is wanted into a folder, to be run and looked at.
+/// Writes the scene of every case that is wanted into a folder, to be run and looked at.
 ///
 /// # Errors
 /// The folder cannot be written.

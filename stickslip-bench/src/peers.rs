@@ -1,14 +1,11 @@
 //! The same problem with other programs, as their users write it.
 
-use super::measure::Effort;
-use super::problems::BenchExtent;
-use super::record::PeerResult;
-use crate::failure::Failure;
-use crate::tell::tell;
+use crate::record::PeerResult;
 use miette::miette;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use stickslip::observe::{OutputError, replace};
+use stickslip_cli::bench::{BenchExtent, Effort, Failure};
 
 /// Taichi and NVIDIA Warp from the Python package index.
 pub struct Peers {
@@ -20,10 +17,10 @@ pub struct Peers {
 
 /// Packages that are installed; the newest of each, and what runs is in the report.
 const PACKAGES: [&str; 3] = ["numpy", "taichi", "warp-lang"];
-const CUBE: &str = include_str!("../../../bench/peers/cube.py");
+const CUBE: &str = include_str!("../../bench/peers/cube.py");
 const SCRIPTS: [(&str, &str); 2] = [
-    ("Taichi", include_str!("../../../bench/peers/with_taichi.py")),
-    ("Warp", include_str!("../../../bench/peers/with_warp.py")),
+    ("Taichi", include_str!("../../bench/peers/with_taichi.py")),
+    ("Warp", include_str!("../../bench/peers/with_warp.py")),
 ];
 
 impl Peers {
@@ -34,7 +31,7 @@ impl Peers {
     pub fn measure(&self, python: &Path) -> Result<Vec<PeerResult>, Failure> {
         let mut results = Vec::new();
         for (program, script) in SCRIPTS {
-            tell!("{program} ...");
+            eprintln!("{program} ...");
             results.extend(self.run(python, program, script)?);
         }
         Ok(results)
@@ -48,7 +45,7 @@ impl Peers {
         let python = self.environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
         let ready = quiet(&python).args(["-c", "import numpy, taichi, warp"]).status();
         if !ready.is_ok_and(|status| status.success()) {
-            tell!("installing {} into {} ...", PACKAGES.join(", "), self.environment.display());
+            eprintln!("installing {} into {} ...", PACKAGES.join(", "), self.environment.display());
             let made = Command::new("python3").args(["-m", "venv"]).arg(&self.environment).status();
             succeeded(made, "cannot make a Python environment", "install Python 3 with its `venv`")?;
             let installed = Command::new(&python)

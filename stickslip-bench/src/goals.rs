@@ -1,10 +1,10 @@
 //! Ratios of what was measured, and what they are to be.
 
-use super::on_ranks::OnRanks;
-use super::problems::{BLOCKS_APART, BLOCKS_IN_CONTACT};
-use super::record::{EndToEnd, Measured, PeerResult, median};
-use super::scaling::{CLUSTER, StepModel};
+use crate::on_ranks::OnRanks;
+use crate::record::{EndToEnd, PeerResult};
+use crate::scaling::{CLUSTER, StepModel};
 use serde::Serialize;
+use stickslip_cli::bench::{BLOCKS_APART, BLOCKS_IN_CONTACT, Measured, median};
 
 /// A number that is to be so large or so small.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -264,8 +264,8 @@ fn extremes(values: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::problems::{BenchCase, BenchScheme};
     use super::*;
+    use stickslip_cli::bench::{BenchCase, BenchScheme};
 
     fn measured(
         problem: &'static str,

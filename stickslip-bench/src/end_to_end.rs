@@ -1,11 +1,9 @@
 //! Problem P6: whole runs as a user starts them, with and without outputs, checks and checkpoints.
 
-use super::measure::{BenchSample, BenchTask, Order};
-use super::problems::BenchExtent;
-use super::record::EndToEnd;
-use crate::failure::Failure;
+use crate::record::EndToEnd;
 use miette::miette;
 use std::path::{Path, PathBuf};
+use stickslip_cli::bench::{BenchExtent, BenchSample, BenchTask, Failure, Order};
 
 /// A scene of the paper that is run whole.
 pub struct WholeRun {
@@ -15,8 +13,8 @@ pub struct WholeRun {
     overrides: &'static [(&'static str, &'static str)],
 }
 
-const SPHERE: &str = include_str!("../../../scenes/paper/inclined_plane_no_slip.toml");
-const DISKS: &str = include_str!("../../../scenes/paper/disks_collinear.toml");
+const SPHERE: &str = include_str!("../../scenes/paper/inclined_plane_no_slip.toml");
+const DISKS: &str = include_str!("../../scenes/paper/disks_collinear.toml");
 /// Runs of each kind; they take turns, so that a disturbance hits all of them.
 const REPETITIONS: usize = 3;
 /// What takes the outputs away, but for the first and the last row of each table.

@@ -3,15 +3,15 @@
 //! The ranks are threads of a process whose only way to each other are messages ([`stickslip::ranks::Threads`]): what
 //! they send is what processes send, but for the time that a network takes.
 
-use super::measure::{BenchSample, BenchTask, Effort, Order};
-use super::problems::{BLOCKS_IN_CONTACT, BenchCase, BenchExtent, BenchScheme, cases};
-use super::record::median;
-use crate::failure::Failure;
-use crate::tell::tell;
+use crate::scaling::halo;
 use miette::miette;
 use serde::Serialize;
 use stickslip::check::free_memory;
 use stickslip::door::RankShare;
+use stickslip_cli::bench::{
+    BLOCKS_IN_CONTACT, BenchCase, BenchExtent, BenchSample, BenchScheme, BenchTask, Effort, Failure, Order,
+    cases, median,
+};
 
 /// A problem on so many ranks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -70,7 +70,7 @@ impl OnRanks {
 
     fn of(case: &BenchCase, (mut effort, turns): (Effort, usize), ranks: usize) -> Result<Self, Failure> {
         let problem = case.label();
-        tell!("P7 {problem}, {ranks} ranks ...");
+        eprintln!("P7 {problem}, {ranks} ranks ...");
         let (mut threads, mut seconds, mut shares) = (Vec::new(), Vec::new(), Vec::new());
         let (mut particles, mut bodies) = (0, 0);
         for _ in 0..turns {
@@ -105,7 +105,7 @@ impl OnRanks {
             threads,
             seconds,
             bytes: mean(&|share| share.traffic.bytes as f64 / steps_of(share)),
-            modelled: case.scheme.halo(particles, ranks),
+            modelled: halo(case.scheme, (particles, ranks)),
             messages: mean(&|share| share.traffic.messages as f64 / steps_of(share)),
             computed: mean(&|share| share.computed / steps_of(share)),
             waiting: mean(&|share| {
@@ -165,7 +165,7 @@ impl WeakScaling {
             let report = scene.ok().and_then(|read| stickslip::check::report(&read.scene).ok());
             let fits = report.is_none_or(|report| report.memory * *ranks as f64 <= free_memory());
             if !fits {
-                tell!("P7 {}, grown to {ranks} ranks: left out for want of memory", case.label());
+                eprintln!("P7 {}, grown to {ranks} ranks: left out for want of memory", case.label());
             }
             fits
         });
@@ -177,7 +177,7 @@ impl WeakScaling {
         (effort, turns): (Effort, usize),
         ranks: usize,
     ) -> Result<Self, Failure> {
-        tell!("P7 {problem}, grown to {ranks} ranks ...");
+        eprintln!("P7 {problem}, grown to {ranks} ranks ...");
         let order = |ranks: usize| Order {
             scene: grown.scene.clone(),
             overrides: Vec::new(),
@@ -211,7 +211,7 @@ impl WeakScaling {
             computed: mean(&computed),
             particle: median(&apart.iter().map(per_particle).collect::<Vec<_>>()),
             bytes: mean(&of_shares(&|share| share.traffic.bytes as f64)),
-            modelled: grown.scheme.halo(particles, ranks),
+            modelled: halo(grown.scheme, (particles, ranks)),
             imbalance: median(&imbalances),
         })
     }
@@ -289,7 +289,7 @@ const TIMES: usize = 3;
 /// # Errors
 /// A measurement fails.
 pub fn body_elsewhere(extent: BenchExtent) -> Result<f64, Failure> {
-    tell!("P7 bodies that are elsewhere ...");
+    eprintln!("P7 bodies that are elsewhere ...");
     let times = if extent == BenchExtent::Tiny { 1 } else { TIMES };
     let computed = |other: &str| -> Result<(f64, usize), Failure> {
         let scene = [BLOCK, other].concat();

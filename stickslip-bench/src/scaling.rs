@@ -3,19 +3,18 @@
 //! ```text
 //! T = i (a n + e H) + b N + H / B + L (9 + 6 d),     d = log2 r, rounded up
 //! ```
-//! r: ranks, n: particles of a rank, N: bodies of the scene, H: bytes that a rank sends, by [`BenchScheme::halo`] times
-//! what contact adds; a, e, b: times that computing takes for a particle, a byte sent and a body that is elsewhere; i:
+//! r: ranks, n: particles of a rank, N: bodies of the scene, H: bytes that a rank sends, by [`halo`] times what contact
+//! adds; a, e, b: times that computing takes for a particle, a byte sent and a body that is elsewhere; i:
 //! imbalance; B, L: bandwidth and latency of the network. A step has three exchanges of messages whose number nobody
 //! knows before, each with an answer and a barrier (2 + d latencies), three that both sides expect (windows twice, and
 //! guests), what the first rank asks for (d) and a sum over all (2 d). What is under way while the interior is done
 //! counts in full, so the model is not too good. What it leaves out: output, and the moments in which the grid is
 //! shared out anew.
 
-use super::on_ranks::WeakScaling;
-use super::problems::BenchScheme;
-use crate::chart::{Chart, Curve, Panel};
-use crate::drawing::body_color;
+use crate::on_ranks::WeakScaling;
 use serde::Serialize;
+use stickslip::surface::body_color;
+use stickslip_cli::bench::{BenchScheme, Chart, Curve, PARTICLES_PER_CELL, Panel};
 
 /// A network between machines.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -105,7 +104,7 @@ impl StepModel {
     /// A step of so many ranks, with so many particles each.
     pub fn step(&self, ranks: f64, particles: f64, network: Network) -> StepTime {
         let sent = if ranks > 1.0 {
-            self.with_contact * self.scheme.halo((particles * ranks) as usize, ranks as usize)
+            self.with_contact * halo(self.scheme, ((particles * ranks) as usize, ranks as usize))
         } else {
             0.0
         };
@@ -133,6 +132,24 @@ impl StepModel {
         let step = self.step(1000.0, particles, network);
         (step.borders + step.sending) / step.sum()
     }
+}
+
+/// Bytes that a rank sends in a step at least, of several that share so many particles which fill a cube: the mean over
+/// ranks. Halving the cube again and again makes faces between ranks, in cells^2:
+///
+/// ```text
+/// A = 3 s^2 (r^(1/3) - 1),   s: cells along the cube, r: ranks
+/// ```
+/// Through a face goes in both directions what tiles give to the nodes that particles of the other side reach, tile by
+/// tile: as many layers as functions reach beyond a node of a particle's own cell, in each (4 + layers)^2 nodes for 4^2
+/// cells, and of each node its momentum twice, its force and its mass.
+pub fn halo(scheme: BenchScheme, (particles, ranks): (usize, usize)) -> f64 {
+    let side = (particles as f64 / PARTICLES_PER_CELL).cbrt();
+    let ranks = ranks as f64;
+    let faces = 3.0 * side * side * (ranks.cbrt() - 1.0);
+    let layers = if scheme.basis == "linear" { 1.0 } else { 2.0 };
+    let nodes = layers * ((4.0 + layers) / 4.0_f64).powi(2);
+    2.0 * faces / ranks * nodes * 10.0 * scheme.number_bytes()
 }
 
 /// Ranks up to 10,000, four for each factor of ten.
@@ -210,7 +227,7 @@ mod tests {
             computed,
             particle: 1e-7,
             bytes,
-            modelled: scheme.halo(1_000_000, ranks),
+            modelled: halo(scheme, (1_000_000, ranks)),
             imbalance: 1.0,
         }
     }
@@ -219,7 +236,7 @@ mod tests {
     #[test]
     fn the_model_gives_back_what_was_measured() {
         let scheme = BenchScheme::default();
-        let halo = scheme.halo(1_000_000, 2);
+        let halo = halo(scheme, (1_000_000, 2));
         // 100 bodies elsewhere take 1e-7 s of it.
         let measured = [grown(2, 0.06 + 1e-7, 2.0 * halo)];
         let model = StepModel::fit(&measured, scheme, (1e-4, 1e-9)).unwrap();
