@@ -10,7 +10,7 @@
 #[macro_use]
 mod same_run;
 
-use same_run::{StopAfter, assert_same_run, files, options};
+use same_run::{StopAfter, assert_same_run, box_of_triangles, files, options, scene, scene_in};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use stickslip::observe::{
     Checkpoint, FolderError, Manifest, OutputError, Patience, Results, Status, Waiting, Writer,
 };
 use stickslip::run::{Progress, ResumeError, RunError, RunOptions, Summary, resume, run, run_with};
-use stickslip::scene::{Scene, parse};
+use stickslip::scene::Scene;
 
 const PLANE: &str = concat!(
     r#"
@@ -32,33 +32,9 @@ cell = 0.1
 precision = "double"
 [time]
 end = 0.4
-[materials.slow]
-density = 1000
-viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
-[materials.clay]
-density = 1000
-von_mises = { young_modulus = 2e5, poisson_ratio = 0.3, yield_stress = 2e3 }
-[[bodies]]
-name = "low"
-material = "slow"
-shape.ball = { center = [0, 0.5], radius = 0.5 }
-[[bodies]]
-name = "high"
-material = "clay"
-shape.ball = { center = [0.2, 1.52], radius = 0.5 }
-velocity = [0, -2]
-spin = 3
-[[bodies]]
-name = "floor"
-material = "slow"
-shape.half_space = { point = [0, -0.01], normal = [0, 1] }
-rigid = {}
-[[bodies]]
-name = "paddle"
-material = "slow"
-shape.box = { min = [-0.9, 0.3], max = [-0.6, 0.6] }
-rigid = { velocity = ["0.6 * sin(20 * t)", 0], spin = "2 * t" }
-[[bodies]]
+"#,
+    two_disks!(),
+    r#"[[bodies]]
 name = "flap"
 material = "slow"
 shape.box = { min = [0.52, 0.1], max = [0.72, 0.7] }
@@ -391,27 +367,6 @@ surfaces = 0.2
 checkpoints = 0.1
 tractions = { interval = 0.017, bodies = ["low", "high"] }
 "#;
-
-/// The box from the origin to this corner.
-fn box_of_triangles(x: f64) -> String {
-    let corner = |i: usize| {
-        let [far, right, up] = [0, 1, 2].map(|axis| i >> axis & 1);
-        format!("v {} {right} {up}\n", if far == 1 { x } else { 0.0 })
-    };
-    let faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
-    let face = |[a, b, c, d]: [usize; 4]| format!("f {a} {b} {c}\nf {a} {c} {d}\n");
-    (0..8).map(corner).chain(faces.map(face)).collect()
-}
-
-fn scene(text: &str) -> Scene {
-    parse("scene.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
-}
-
-/// A scene beside the mesh that it names.
-fn scene_in(folder: &Path, text: &str) -> Scene {
-    let name = folder.join("scene.toml").display().to_string();
-    parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
-}
 
 fn start(scene: &Scene, out: &Path) -> Result<Summary, RunError> {
     run(scene, &mut *stickslip::step::build(scene).unwrap(), &options(out), &mut |_| {})

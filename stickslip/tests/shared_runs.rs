@@ -12,14 +12,14 @@
 #[macro_use]
 mod same_run;
 
-use same_run::{StopAfter, assert_same_run, options};
+use same_run::{StopAfter, assert_same_run, box_of_triangles, options, scene_in};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use stickslip::door::Simulation;
 use stickslip::observe::{Checkpoint, PROGRAM, Results, Status};
 use stickslip::run::{RunError, Summary, resume, run, run_with};
-use stickslip::scene::{Scene, parse};
+use stickslip::scene::Scene;
 use stickslip::shared::among_threads;
 
 const PLANE: &str = concat!(
@@ -34,33 +34,9 @@ domain = { min = [-2, -1], max = [3, 4], x_min = "symmetry" }
 end = 0.3
 [health]
 retries = 2
-[materials.slow]
-density = 1000
-viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
-[materials.clay]
-density = 1000
-von_mises = { young_modulus = 2e5, poisson_ratio = 0.3, yield_stress = 2e3 }
-[[bodies]]
-name = "low"
-material = "slow"
-shape.ball = { center = [0, 0.5], radius = 0.5 }
-[[bodies]]
-name = "high"
-material = "clay"
-shape.ball = { center = [0.2, 1.52], radius = 0.5 }
-velocity = [0, -2]
-spin = 3
-[[bodies]]
-name = "floor"
-material = "slow"
-shape.half_space = { point = [0, -0.01], normal = [0, 1] }
-rigid = {}
-[[bodies]]
-name = "paddle"
-material = "slow"
-shape.box = { min = [-0.9, 0.3], max = [-0.6, 0.6] }
-rigid = { velocity = ["0.6 * sin(20 * t)", 0], spin = "2 * t" }
-[[contact]]
+"#,
+    two_disks!(),
+    r#"[[contact]]
 between = ["any", "any"]
 friction = 0.3
 [outputs]
@@ -458,22 +434,10 @@ checkpoints = 0.02
 tractions.interval = 0.007
 "#;
 
-/// The unit cube.
-fn cube() -> String {
-    let corner = |i: usize| {
-        let [x, y, z] = [0, 1, 2].map(|axis| i >> axis & 1);
-        format!("v {x} {y} {z}\n")
-    };
-    let faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
-    let face = |[a, b, c, d]: [usize; 4]| format!("f {a} {b} {c}\nf {a} {c} {d}\n");
-    (0..8).map(corner).chain(faces.map(face)).collect()
-}
-
-/// What a scene reads beside a cube.
+/// A scene beside a mesh of a cube.
 fn scene(folder: &Path, text: &str) -> Scene {
-    fs::write(folder.join("box.obj"), cube()).unwrap();
-    let name = folder.join("scene.toml").display().to_string();
-    parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+    fs::write(folder.join("box.obj"), box_of_triangles(1.0)).unwrap();
+    scene_in(folder, text)
 }
 
 /// What the first of so many ranks gives, which share the simulation of a scene.

@@ -6,11 +6,14 @@
 //! Expected: particles begin where they were, to the bit, and go on from there as if nothing had happened where nothing
 //! is new.
 
+mod same_run;
+
+use same_run::{options, scene};
 use std::path::Path;
 use stickslip::door::{ParticleSnapshot, Simulation};
 use stickslip::observe::Results;
-use stickslip::run::{Checkpointing, ResumeError, RunError, RunOptions, Summary, resume, run};
-use stickslip::scene::{Scene, StartVelocities, parse};
+use stickslip::run::{ResumeError, RunError, RunOptions, Summary, resume, run};
+use stickslip::scene::{Scene, StartVelocities};
 
 const PACKING: &str = r#"
 gravity = [0, -9.81]
@@ -49,20 +52,9 @@ between = ["any", "any"]
 friction = 0.4
 "#;
 
-fn scene(text: &str) -> Scene {
-    parse("scene.toml", text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
-}
-
 /// The same with a table that says where bodies begin.
 fn from(text: &str, folder: &Path, more: &str) -> Scene {
     scene(&format!("{text}\n[start]\nfrom = {:?}\n{more}", folder.to_str().unwrap()))
-}
-
-fn options(out: &Path) -> RunOptions {
-    RunOptions {
-        checkpoints: Checkpointing { at_end: true, ..Checkpointing::default() },
-        ..RunOptions::new(out)
-    }
 }
 
 fn make(scene: &Scene, out: &Path) -> Result<(Summary, Box<dyn Simulation>), RunError> {

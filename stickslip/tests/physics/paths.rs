@@ -10,51 +10,21 @@
 //! twice, and a stiff law turns round-off of strain into forces. All paths that take several at a time and round a
 //! product and a sum once agree bit for bit with each other: they sum in one order, whatever the processor has.
 
+#[path = "../../../stickslip-engine/tests/engine/flying.rs"]
+mod flying;
+
 use crate::trial::{STRESS_UPDATES, largest_difference, start_on, take_steps};
+use flying::flying;
 use stickslip::door::{ContactCursor, ParticleSnapshot};
 use stickslip::lanes::Processor;
 use stickslip::step::ParticleLoop;
 
 fn scene(dimension: &str, precision: &str, basis: &str, update: &str) -> String {
-    let space = dimension == "3d";
-    let v =
-        |x: &str, y: &str, z: &str| if space { format!("[{x}, {y}, {z}]") } else { format!("[{x}, {y}]") };
-    format!(
-        r#"
-        gravity = {}
-        space = {{ dimension = "{dimension}", interior = "grid", cell = 0.1, basis = "{basis}", precision = "{precision}", domain = {{ min = {}, max = {}, x_min = "symmetry", y_max = "fixed" }} }}
-        time = {{ end = 1, stress_update = "{update}", pic_share = 0.02 }}
-        materials.rubber = {{ density = 1000, neo_hookean = {{ young_modulus = 1e5, poisson_ratio = 0.3 }} }}
-        materials.rock = {{ density = 2000, hypoelastic = {{ young_modulus = 3e5, poisson_ratio = 0.2 }} }}
-        [[bodies]]
-        name = "floor"
-        material = "rock"
-        shape.box = {{ min = {}, max = {} }}
-        rigid = {{ velocity = {} }}
-        [[bodies]]
-        name = "ball"
-        material = "rubber"
-        shape.ball = {{ center = {}, radius = 0.3 }}
-        velocity = {}
-        [[bodies]]
-        name = "stone"
-        material = "rock"
-        shape.ball = {{ center = {}, radius = 0.19 }}
-        velocity = {}
-        [[contact]]
-        friction = 0.3
-        "#,
-        v("1", "-10", "0.5"),
-        v("0", "-0.5", "-1"),
-        v("2", "1", "1"),
-        v("0", "-0.2", "-0.4"),
-        v("1.2", "0", "0.4"),
-        v("0.5", "0.1", "0"),
-        v("0.52", "0.3", "0.1"),
-        v("1", "-1", "0.3"),
-        v("0.2", "0.68", "0.1"),
-        v("1.5", "-2", "0.1"),
-    )
+    let space = format!("interior = \"grid\", basis = \"{basis}\", precision = \"{precision}\"");
+    let time = format!("stress_update = \"{update}\", pic_share = 0.02");
+    let rock =
+        "materials.rock = { density = 2000, hypoelastic = { young_modulus = 3e5, poisson_ratio = 0.2 } }";
+    flying(dimension, [&space, &time, rock])
 }
 
 fn outcome(scene: &str, path: ParticleLoop, steps: usize) -> (ParticleSnapshot, f64) {

@@ -1,12 +1,13 @@
-//! Whether two runs of a scene are one: every file but the times in the record and the checkpoints, byte by byte.
+//! Runs of tests, and whether two of a scene are one: every file but the times in the record and the checkpoints, byte by byte.
 
-#![allow(dead_code)] // each test uses some of it
+#![allow(dead_code, unused_macros)] // each test uses some of it
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use stickslip::observe::{Manifest, OutputError, RunWarning};
 use stickslip::run::{Checkpointing, RunOptions};
+use stickslip::scene::{Scene, parse};
 
 /// The tables of every kind of measurement, for a scene with bodies `low` and `high`.
 macro_rules! every_measurement {
@@ -55,6 +56,61 @@ direction = [0, -1]
 bodies = ["low"]
 "#
     };
+}
+
+/// A disk that remembers and one that flows, which fall on each other and on a rigid floor beside a driven paddle.
+macro_rules! two_disks {
+    () => {
+        r#"[materials.slow]
+density = 1000
+viscoelastic = { bulk_modulus = 2e5, shear_modulus = 5e4, prony = [[0.4, 0.05]] }
+[materials.clay]
+density = 1000
+von_mises = { young_modulus = 2e5, poisson_ratio = 0.3, yield_stress = 2e3 }
+[[bodies]]
+name = "low"
+material = "slow"
+shape.ball = { center = [0, 0.5], radius = 0.5 }
+[[bodies]]
+name = "high"
+material = "clay"
+shape.ball = { center = [0.2, 1.52], radius = 0.5 }
+velocity = [0, -2]
+spin = 3
+[[bodies]]
+name = "floor"
+material = "slow"
+shape.half_space = { point = [0, -0.01], normal = [0, 1] }
+rigid = {}
+[[bodies]]
+name = "paddle"
+material = "slow"
+shape.box = { min = [-0.9, 0.3], max = [-0.6, 0.6] }
+rigid = { velocity = ["0.6 * sin(20 * t)", 0], spin = "2 * t" }
+"#
+    };
+}
+
+/// The scene of a text.
+pub fn scene(text: &str) -> Scene {
+    scene_in(Path::new(""), text)
+}
+
+/// The scene of a text that lies in a folder, beside the files that it names.
+pub fn scene_in(folder: &Path, text: &str) -> Scene {
+    let name = folder.join("scene.toml").display().to_string();
+    parse(&name, text, &[]).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+/// The box from the origin to (x, 1, 1) as a mesh.
+pub fn box_of_triangles(x: f64) -> String {
+    let corner = |i: usize| {
+        let [far, right, up] = [0, 1, 2].map(|axis| i >> axis & 1);
+        format!("v {} {right} {up}\n", if far == 1 { x } else { 0.0 })
+    };
+    let faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+    let face = |[a, b, c, d]: [usize; 4]| format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+    (0..8).map(corner).chain(faces.map(face)).collect()
 }
 
 /// A run on one thread, with a checkpoint at its end.
