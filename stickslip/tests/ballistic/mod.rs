@@ -210,6 +210,7 @@ pub fn scene() -> Scene {
         particles: Arrangement::Lattice,
         particles_per_side: None,
         interior: None,
+        cell: None,
         motion: BodyMotion::Free { velocity: [2.0, 0.0, 0.0], spin: [0.0; 3] },
         stress: None,
         velocity_by_place: None,

@@ -129,6 +129,22 @@ fn what_a_body_on_the_grid_may_have_is_refused() {
     }
 }
 
+/// Cells of its own are for a body with a grid of its own: fewer than two across are too few, whatever the scene's are.
+#[test]
+fn cells_of_bodies_without_a_grid_are_refused() {
+    assert_eq!(problems(&scene(APART, &[("bodies[0].cell", "0.05")])), Ok(()));
+    let expected = "bodies[0].shape: a shape 1 m across, where `a` has interior = \"reference\"; allowed: at least 2 \
+                    cells, 1.2 m; or interior = \"grid\" for `a`";
+    assert_eq!(refused(&scene(APART, &[("bodies[0].cell", "0.6")])), expected);
+    for (body, why) in [("1", "`b` is on the grid that all share"), ("2", "`plate` is rigid")] {
+        let key = format!("bodies[{body}].cell");
+        let expected = format!(
+            "{key}: 0.05 m, where {why}; allowed: none; or interior = \"reference\" for a body that deforms"
+        );
+        assert_eq!(refused(&scene(APART, &[(&key, "0.05")])), expected);
+    }
+}
+
 #[test]
 fn refusals_point_to_the_line() {
     let text = format!("{APART}\n{BODIES}")
