@@ -328,11 +328,17 @@ mod tests {
     #[test]
     fn with_a_small_kinematic_modulus_it_is_von_mises() {
         let law = ArmstrongFrederick { kinematic_modulus: 1e-9, hardening_modulus: 3.0, ..LAW };
-        let mises = VonMises { elastic: LAW.elastic, yield_stress: 0.9, hardening_modulus: 3.0 };
+        let mises = VonMises {
+            elastic: LAW.elastic,
+            yield_stress: 0.9,
+            hardening_modulus: 3.0,
+            hardening: None,
+            rate: None,
+        };
         for h in sample_gradients() {
             let path = |t: f64| Matrix::IDENTITY + h * t;
             let (end, history, _) = follow(&law, (50, 1.0), path);
-            let (exact, [strain], _) = follow(&mises, (50, 1.0), path);
+            let (exact, [strain, _], _) = follow(&mises, (50, 1.0), path);
             assert!((history[0] / strain - 1.0).abs() < 1e-8);
             assert!(end.stress.0.iter().zip(exact.stress.0).all(|(s, e)| (s - e).abs() < 1e-8));
         }

@@ -605,11 +605,17 @@ mod tests {
     #[test]
     fn without_rate_and_heat_straight_hardening_is_that_of_von_mises() {
         let law = JohnsonCook { hardening_exponent: 1.0, rate_coefficient: 0.0, heat: None, ..COPPER };
-        let mises = VonMises { elastic: law.elastic, yield_stress: 90.0, hardening_modulus: 292.0 };
+        let mises = VonMises {
+            elastic: law.elastic,
+            yield_stress: 90.0,
+            hardening_modulus: 292.0,
+            hardening: None,
+            rate: None,
+        };
         for h in sample_gradients() {
             let path = |t: f64| Matrix::IDENTITY + h * t;
             let (end, history, _) = follow(&law, (50, 1.0), path);
-            let (exact, [strain], _) = follow(&mises, (50, 1.0), path);
+            let (exact, [strain, _], _) = follow(&mises, (50, 1.0), path);
             assert!((history[0] / strain - 1.0).abs() < 1e-10 && strain > 0.01, "{history:?} {strain}");
             assert!(end.stress.0.iter().zip(exact.stress.0).all(|(s, e)| (s - e).abs() < 1e-8 * 90.0));
         }

@@ -314,6 +314,8 @@ mod tests {
             elastic: Hypoelastic { elastic: ELASTIC },
             yield_stress: ELASTIC.young_modulus() / 500.0,
             hardening_modulus: 0.0,
+            hardening: None,
+            rate: None,
         };
         let law = law.map(|x| x as f32);
         let increment = Matrix([[1.0 + 1e-5, 0.0, 0.0], [0.0, 1.0 - 0.5e-5, 0.0], [0.0, 0.0, 1.0]]);
@@ -324,7 +326,7 @@ mod tests {
             stress: Symmetric::ZERO,
             dt: 1.0,
         };
-        let mut history = [0.0];
+        let mut history = [0.0; 2];
         for _ in 0..10_000 {
             let deformation = increment * now.deformation;
             let next = Motion { deformation, jacobian: deformation.det(), increment, ..now };

@@ -231,6 +231,21 @@ pub const CASES: &[Cases] = &[
             ("materials.m.von_mises.shear_modulus", "2e6"),
             ("materials.m.von_mises.yield_stress", "2e3"),
             ("materials.m.von_mises.hardening_modulus", "1e3"),
+            ("materials.m.von_mises.hardening_table", "[[0.1, 2e3]]"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, von_mises = { bulk_modulus = 1e6, shear_modulus = 1e6, yield_stress = 1e3, \
+             saturation_stress = 1e3, saturation_exponent = 10, reference_rate = 40, rate_exponent = 5 } }",
+        )],
+        keys: &[
+            ("materials.m.von_mises.saturation_stress", "2e3"),
+            ("materials.m.von_mises.saturation_exponent", "20"),
+            ("materials.m.von_mises.reference_rate", "50"),
+            ("materials.m.von_mises.rate_exponent", "4"),
         ],
     },
     Cases {

@@ -157,7 +157,7 @@ fn laws_of_other_programs_have_an_answer() {
         ("elastic", "here: `hypoelastic`, Hooke's law"),
         ("jh2", "here: none that tension cracks and pressure crushes"),
         ("hoek_brown", "here: `mohr_coulomb`, with friction_angle"),
-        ("creep", "here: `johnson_cook` hardens by its rate"),
+        ("creep", "here: `von_mises` flows by a power of its overstress"),
         ("MAT_DRUCKER_PRAGER", "did you mean `drucker_prager`?"),
     ] {
         let text = edited(MINIMAL, law, &format!("{other} = {{ young_modulus = 1e6 }}"));

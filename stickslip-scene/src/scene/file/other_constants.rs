@@ -9,7 +9,11 @@ const ELSEWHERE: &[(&str, &[&str])] = &[
     ),
     ("hardening_modulus", &["B", "H", "hardening"]),
     ("hardening_exponent", &["n", "N"]),
+    ("saturation_stress", &["Q", "Q_inf", "Qinf"]),
+    ("saturation_exponent", &["b"]),
+    ("hardening_table", &["table", "curve", "hardening_curve"]),
     ("rate_coefficient", &["C"]),
+    ("rate_exponent", &["P", "p", "q"]),
     ("reference_rate", &["epsdot0", "eps_dot_0", "epso", "edot0", "ep0", "reference_strain_rate"]),
     ("thermal_exponent", &["m"]),
     ("melting_temperature", &["Tm", "T_melt", "tmelt", "melting_point"]),
@@ -77,6 +81,10 @@ mod tests {
                     ("G", "shear_modulus"),
                     ("tmelt", "melting_temperature"),
                 ][..],
+            ),
+            (
+                "von_mises",
+                &[("Q", "saturation_stress"), ("b", "saturation_exponent"), ("H", "hardening_modulus")],
             ),
             ("armstrong_frederick", &[("C", "kinematic_modulus"), ("gamma", "dynamic_recovery")]),
             (

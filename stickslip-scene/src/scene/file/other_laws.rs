@@ -97,7 +97,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
             "linearhardening",
             "ucnh",
         ],
-        "here: `von_mises`, with yield_stress and hardening_modulus",
+        "here: `von_mises`, with yield_stress and hardening_modulus, or a hardening_table",
     ),
     (
         &[
@@ -115,37 +115,30 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
          and thermal_exponent = m",
     ),
     (
-        &[
-            "powerlaw",
-            "powerlawplasticity",
-            "ludwik",
-            "hollomon",
-            "swift",
-            "rambergosgood",
-            "voce",
-            "nonlinearhardening",
-        ],
+        &["powerlaw", "powerlawplasticity", "ludwik", "hollomon", "swift", "rambergosgood"],
         "here: `johnson_cook` alone hardens by a power of the plastic strain, yield_stress + hardening_modulus times \
          strain^hardening_exponent; without rate_coefficient and thermal_exponent by that alone",
     ),
     (
+        &["voce", "nonlinearhardening", "saturationhardening"],
+        "here: `von_mises` saturates, with saturation_stress and saturation_exponent, or follows a hardening_table",
+    ),
+    (
         &[
-            "creep",
-            "norton",
-            "nortonhoff",
-            "garofalo",
             "perzyna",
-            "duvautlions",
             "viscoplastic",
             "viscoplasticity",
             "ratedependent",
             "strainratedependentplasticity",
             "cowpersymonds",
-            "anand",
-            "bodnerpartom",
         ],
-        "here: `johnson_cook` hardens by its rate, with rate_coefficient, and `fluid` flows with a viscosity above its \
-         yield_stress; creep under a load that lasts is a law of your own in Python, chapter 15",
+        "here: `von_mises` with reference_rate and rate_exponent flows as Cowper, Symonds and Perzyna have it; \
+         `johnson_cook` hardens by the logarithm of its rate",
+    ),
+    (
+        &["creep", "norton", "nortonhoff", "garofalo", "duvautlions", "anand", "bodnerpartom"],
+        "here: `von_mises` flows by a power of its overstress, with reference_rate and rate_exponent, `fluid` with a \
+         viscosity above its yield_stress; creep below it is a law of your own in Python, chapter 15",
     ),
     (
         &[
@@ -420,7 +413,9 @@ mod tests {
                 "here: none that tension",
             ),
             (&["hoek_brown"], "here: `mohr_coulomb`"),
-            (&["creep", "norton", "perzyna", "Cowper-Symonds"], "here: `johnson_cook` hardens by its rate"),
+            (&["creep", "norton"], "here: `von_mises` flows by a power of its overstress"),
+            (&["perzyna", "Cowper-Symonds"], "here: `von_mises` with reference_rate"),
+            (&["voce"], "here: `von_mises` saturates"),
             (&["mises", "plasticity", "MAT_PIECEWISE_LINEAR_PLASTICITY"], "here: `von_mises`"),
             (&["concrete", "Concrete Damaged Plasticity"], "here: `damage`"),
             (&["MAT_PLASTIC_KINEMATIC"], "here: `armstrong_frederick`"),
