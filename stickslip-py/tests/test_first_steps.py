@@ -14,8 +14,8 @@ from stickslip.scene import CHECKPOINT
 from stickslip.simulation import DERIVED, WRITABLE
 
 LAWS = (
-    "neo_hookean hypoelastic hencky mooney_rivlin ogden fluid johnson_cook armstrong_frederick von_mises viscoelastic "
-    "damage drucker_prager modified_cam_clay mohr_coulomb mu_i"
+    "neo_hookean hypoelastic hencky mooney_rivlin ogden fluid johnson_cook armstrong_frederick von_mises "
+    "crushable_foam viscoelastic damage drucker_prager modified_cam_clay mohr_coulomb mu_i"
 ).split()
 
 

@@ -185,6 +185,7 @@ mod tests {
     fn laws() -> Vec<Material<f64>> {
         let flows = [("yield_stress", 3.0), ("hardening_modulus", 0.0)];
         let by_rate = [("hardening_exponent", 1.0), ("rate_coefficient", 0.1), ("reference_rate", 1.0)];
+        let crushed = [("plateau_stress", 40.0), ("plastic_poisson_ratio", 0.0), ("hardening_modulus", 0.0)];
         let moves = [("kinematic_modulus", 1.0), ("dynamic_recovery", 1.0)];
         vec![
             law("hencky", &[]),
@@ -192,6 +193,7 @@ mod tests {
             law("ogden", &[]),
             law("johnson_cook", &[&flows[..], &by_rate].concat()),
             law("armstrong_frederick", &[&flows[..], &moves].concat()),
+            law("crushable_foam", &crushed),
             law("neo_hookean", &[]),
             law("hypoelastic", &[]),
             law("von_mises", &[("yield_stress", 3.0), ("hardening_modulus", 0.0)]),
@@ -227,7 +229,7 @@ mod tests {
         }
         assert_eq!(
             laws().iter().map(Material::carries_stress).collect::<Vec<_>>(),
-            [false, false, false, true, true, false, true, true, false, false, false]
+            [false, false, false, true, true, true, false, true, true, false, false, false]
         );
     }
 

@@ -120,6 +120,7 @@ laws! { $
     johnson_cook JohnsonCook;
     armstrong_frederick ArmstrongFrederick;
     von_mises VonMises;
+    crushable_foam CrushableFoam;
     viscoelastic Viscoelastic;
     damage Damage;
     drucker_prager DruckerPrager;

@@ -186,11 +186,11 @@ class Scene:
         Laws are `neo_hookean` for rubber and whatever else is elastic at large strains, `hypoelastic` for small strains
         and large rotations, `von_mises` for metals and clay (`yield_stress`, `hardening_modulus`), `viscoelastic` for
         polymers and gels, `damage` for rock, concrete and glass, `hencky`, `mooney_rivlin` and `ogden` for rubber,
-        `fluid` for what flows, `johnson_cook` and `armstrong_frederick` for metals, `drucker_prager`, `mohr_coulomb`,
-        `modified_cam_clay` and `mu_i` for soils and grains. Elastic constants are any two of `bulk_modulus`,
-        `shear_modulus`, `young_modulus`, `poisson_ratio` and `p_wave_modulus`. `ss.keys("materials.von_mises")` lists
-        what one takes. A law of your own is `outside=dict(law=function, bulk_modulus=..., shear_modulus=...)`, see
-        `Law`.
+        `fluid` for what flows, `johnson_cook` and `armstrong_frederick` for metals, `crushable_foam` for foams,
+        `drucker_prager`, `mohr_coulomb`, `modified_cam_clay` and `mu_i` for soils and grains. Elastic constants are any
+        two of `bulk_modulus`, `shear_modulus`, `young_modulus`, `poisson_ratio` and `p_wave_modulus`.
+        `ss.keys("materials.von_mises")` lists what one takes. A law of your own is
+        `outside=dict(law=function, bulk_modulus=..., shear_modulus=...)`, see `Law`.
         """
         return self._update("materials", {name: _keys(keys)})
 

@@ -271,6 +271,56 @@ pub const CASES: &[Cases] = &[
         scene: PLANE,
         with: &[(
             "materials.m",
+            "{ density = 1, crushable_foam = { bulk_modulus = 1e6, shear_modulus = 1e6, plateau_stress = 1e3 } }",
+        )],
+        keys: &[
+            (
+                "materials.m.crushable_foam",
+                "{ bulk_modulus = 1e6, shear_modulus = 1e6, plateau_stress = 2e3 }",
+            ),
+            ("materials.m.crushable_foam.bulk_modulus", "2e6"),
+            ("materials.m.crushable_foam.shear_modulus", "2e6"),
+            ("materials.m.crushable_foam.plateau_stress", "2e3"),
+            ("materials.m.crushable_foam.plastic_poisson_ratio", "0.2"),
+            ("materials.m.crushable_foam.hardening_modulus", "1e3"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, crushable_foam = { bulk_modulus = 1e6, shear_modulus = 1e6, plateau_stress = 1e3, \
+             densification_strain = 1, densification_stress = 1e3, densification_exponent = 3 } }",
+        )],
+        keys: &[
+            ("materials.m.crushable_foam.densification_strain", "2"),
+            ("materials.m.crushable_foam.densification_stress", "2e3"),
+            ("materials.m.crushable_foam.densification_exponent", "4"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, crushable_foam = { young_modulus = 1e6, poisson_ratio = 0.3, plateau_stress = 1e3 } }",
+        )],
+        keys: &[
+            ("materials.m.crushable_foam.young_modulus", "2e6"),
+            ("materials.m.crushable_foam.poisson_ratio", "0.2"),
+        ],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
+            "{ density = 1, crushable_foam = { p_wave_modulus = 1e6, poisson_ratio = 0.3, plateau_stress = 1e3 } }",
+        )],
+        keys: &[("materials.m.crushable_foam.p_wave_modulus", "2e6")],
+    },
+    Cases {
+        scene: PLANE,
+        with: &[(
+            "materials.m",
             "{ density = 1, viscoelastic = { bulk_modulus = 1e6, shear_modulus = 1e6, prony = [[0.5, 1]] } }",
         )],
         keys: &[

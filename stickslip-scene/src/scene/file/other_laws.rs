@@ -204,16 +204,17 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
             "capplasticity",
             "clayplasticity",
             "geologiccapmodel",
-            "crushablefoam",
-            "lowdensityfoam",
             "soilandfoam",
             "soilfoam",
-            "honeycomb",
-            "foam",
             "snow",
         ],
         "here: `modified_cam_clay`, which hardens as it is compacted, with critical_slope, compression_slope and \
          swelling_slope",
+    ),
+    (
+        &["foam", "metalfoam", "deshpandefleckfoam", "deshpandefleck", "lowdensityfoam", "honeycomb"],
+        "here: `crushable_foam`, with plateau_stress, plastic_poisson_ratio and a densification_strain, which stays \
+         crushed; foam that comes back is a body drawn with its pores, or a law of your own in Python, chapter 15",
     ),
     (
         &["norsand", "hypoplastic", "hypoplasticity", "hardeningsoil", "externalsoilmodel"],
@@ -416,6 +417,8 @@ mod tests {
             (&["creep", "norton"], "here: `von_mises` flows by a power of its overstress"),
             (&["perzyna", "Cowper-Symonds"], "here: `von_mises` with reference_rate"),
             (&["voce"], "here: `von_mises` saturates"),
+            (&["MAT_DESHPANDE_FLECK_FOAM", "foam"], "here: `crushable_foam`"),
+            (&["MAT_CRUSHABLE_FOAM"], "did you mean `crushable_foam`?"),
             (&["mises", "plasticity", "MAT_PIECEWISE_LINEAR_PLASTICITY"], "here: `von_mises`"),
             (&["concrete", "Concrete Damaged Plasticity"], "here: `damage`"),
             (&["MAT_PLASTIC_KINEMATIC"], "here: `armstrong_frederick`"),
