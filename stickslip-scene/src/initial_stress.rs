@@ -61,6 +61,8 @@ pub fn at(scene: &Scene, number: usize, places: Vec<[f64; 3]>) -> Result<Vec<Ini
         Symmetric(std::array::from_fn(|k| formulas[k].at_moment(&moment)))
     };
     let of_stress = |stress: Symmetric<f64>, place: [f64; 3]| {
+        // Without the round-off of a grid.
+        let place = place.map(|x| format!("{x:.9e}").parse().unwrap_or(x));
         let refused = |allowed: &str| Problem {
             key: format!("bodies[{number}].stress"),
             found: format!("{:?} Pa (xx, yy, zz, xy, yz, xz) at {place:?} m in `{}`", stress.0, body.name),

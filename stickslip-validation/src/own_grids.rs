@@ -21,7 +21,6 @@ const NOT_MEASURED: &[(&str, &[&str])] = &[
             "2 on 3, 15 to 45 degrees, everywhere",
         ],
     ),
-    ("punch", &["force, nu = 0.3, averaged", "force, nu = 0.49, averaged", "force, nu = 0.4999, averaged"]),
     ("groove", &["spin, prisms less boxes in space"]),
 ];
 
@@ -126,12 +125,6 @@ a point parts, its layer loses the shear that it stored.",
         ],
         why: "Each particle keeps its own volume, and the block locks a little: 1.26, 1.12, 1.06 with 8, 16, 32 cells \
 on the height.",
-    },
-    Known {
-        benchmark: "cook",
-        metrics: &["sag, nu = 0.4999"],
-        misses: &[Miss { cells: 12.0, off: 0.31 }, Miss { cells: 24.0, off: 0.16 }],
-        why: "Each particle keeps its own volume, and the panel locks a little: 0.79 with 12 cells, 0.89 with 24.",
     },
 ];
 

@@ -39,7 +39,7 @@ fn keys() {
             (
                 "[[bodies]]",
                 "[bodies]",
-                "12:2: bodies: found a table; allowed: a list [...] of a table with the keys name, repeat, array, material, shape, beyond_mirrors, particles, particles_per_side, interior, velocity, spin, rigid, stress; tables in a list have two brackets: [[bodies]]",
+                "12:2: bodies: found a table; allowed: a list [...] of a table with the keys name, repeat, array, material, shape, beyond_mirrors, particles, particles_per_side, interior, cell, velocity, spin, rigid, stress; tables in a list have two brackets: [[bodies]]",
             ),
             (
                 "radius = \"0.4 m\"",

@@ -45,7 +45,6 @@ const G: f64 = 1e-3;
 fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     for (metric, (poisson, volume_change)) in SAGS.into_iter().zip(CASES) {
-        let volume_change = if case.is_own() { "own" } else { volume_change };
         let sag = sag(case, (poisson, volume_change), &mut outcome)?;
         let [coarse, fine] = [32, 64].map(|elements| exact_sag(poisson, elements));
         outcome.measure(metric, sag / (2.0 * fine - coarse));

@@ -81,7 +81,6 @@ fn run(case: &Case) -> Result<Outcome, CaseFailure> {
     let mut outcome = Outcome::default();
     let own = FORCES.into_iter().zip(POISSON).map(|(metric, poisson)| (metric, poisson, "own"));
     let averaged = AVERAGED.into_iter().zip(POISSON).map(|(metric, poisson)| (metric, poisson, "averaged"));
-    let averaged = averaged.filter(|_| !case.is_own());
     for (metric, poisson, volume_change) in own.chain(averaged) {
         let force = punch(case, (poisson, volume_change), &mut outcome)?;
         let [coarse, fine] = [32, 64].map(|elements| stiffness(poisson, elements));
