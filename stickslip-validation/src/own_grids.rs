@@ -126,6 +126,13 @@ a point parts, its layer loses the shear that it stored.",
         why: "Each particle keeps its own volume, and the block locks a little: 1.26, 1.12, 1.06 with 8, 16, 32 cells \
 on the height.",
     },
+    Known {
+        benchmark: "cook",
+        metrics: &["sag, nu = 0.4999"],
+        misses: &[Miss { cells: 12.0, off: 0.065 }, Miss { cells: 24.0, off: 0.032 }],
+        why: "The mean over a cell leaves the slanted borders a little too stiff, where nodes outside follow those \
+inside: 0.942 with 12 cells, 0.972 with 24, of first order (0.79, 0.89 without means).",
+    },
 ];
 
 /// Why a benchmark is of the common grid alone.
