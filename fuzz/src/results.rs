@@ -1,5 +1,5 @@
-//! Folders of results: the record of a run, tables, snapshots and their list, by the readers of `render`, `plot`, `view`
-//! and the library.
+//! Folders of results: the record of a run, tables, snapshots and their list, by the readers of `render`, `plot`,
+//! `view` and the library.
 
 use crate::is_one_in;
 use crate::template::Template;

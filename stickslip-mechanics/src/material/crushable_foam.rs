@@ -7,10 +7,10 @@
 //! Y = Y_0 + H a - R ln(1 - (a/a_D)^b)                                                 a: equivalent plastic strain
 //! flow along the normal: in shear da A q/S, in compaction da B p/S
 //! ```
-//! In their form S^2 = (q^2 + alpha^2 p^2)/(1 + (alpha/3)^2) with alpha^2 = 9 (1 - 2 nu)/(2 (1 + nu)), and Reyes' gamma is
-//! H a_D. In uniaxial stress S is its magnitude, a the plastic part of the logarithmic strain, and nu the strain across
-//! over it. The true stress is bounded, as a foam with nu = 0 keeps its section: then Y is also force over the section
-//! at the start. It flows and hardens in tension as in compression.
+//! In their form S^2 = (q^2 + alpha^2 p^2)/(1 + (alpha/3)^2) with alpha^2 = 9 (1 - 2 nu)/(2 (1 + nu)), and Reyes' gamma
+//! is H a_D. In uniaxial stress S is its magnitude, a the plastic part of the logarithmic strain, and nu the strain
+//! across over it. The true stress is bounded, as a foam with nu = 0 keeps its section: then Y is also force over the
+//! section at the start. It flows and hardens in tension as in compression.
 //!
 //! A step ends at q = q*/(1 + 3 G A t) and p = p*/(1 + K B t) of the elastic step's q* and p*, with the t >= 0 that
 //! solves

@@ -108,7 +108,8 @@ impl<V: Lanes> Elastic<V> {
 
     /// -V P = -V sigma J F^-T, zero where the volume is, and whether all are sound; in the plane F has a one beyond.
     /// With a mean Jm of J over the cell the pressure is that of Jm, which is all that the law takes from it:
-    /// W = U(Jm) + G/2 (J^(-2/3) tr(F F^T) - 3). `fastest` becomes the larger of itself and the squares of waves' speeds in undeformed lengths [m^2/s^2].
+    /// W = U(Jm) + G/2 (J^(-2/3) tr(F F^T) - 3). `fastest` becomes the larger of itself and the squares of waves'
+    /// speeds in undeformed lengths [m^2/s^2].
     #[inline(always)]
     pub fn pulls<const D: usize>(
         &self,

@@ -289,9 +289,7 @@ fn initial_stresses() {
         "bodies[0].stress: [0.0, 0.0, 0.0, 0.0, 0.0, 1.0] Pa (xx, yy, zz, xy, yz, xz) at [0.025, 0.025, 0.0] m in \
          `block`; none out of the plane of the scene; in plane strain along z, zz, alone"
     );
-    assert!(
-        problem(&with("stress.yy = \"1 Pa * 1 m / (y - y)\"")).contains("stresses that are numbers")
-    );
+    assert!(problem(&with("stress.yy = \"1 Pa * 1 m / (y - y)\"")).contains("stresses that are numbers"));
     let flows = with("stress.xy = \"1 MPa\"").replace(
         "neo_hookean = { young_modulus = \"1 MPa\"",
         "von_mises = { yield_stress = 1000, young_modulus = \"1 MPa\"",

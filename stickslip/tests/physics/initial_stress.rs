@@ -8,8 +8,8 @@
 //!
 //! Expected: the column, whose stress is exact at the particles, moves by less than 1e-6 of what it would sink by (1e-8
 //! at most), and its stress stays within 1e-6. The bar comes to rest longer by sigma/E within 1 %; it begins with the
-//! strain energy sigma^2 V / (2 E) within 1 %, and its ledger closes within 1e-3 of that, on a grid of its own within 0.01:
-//! there velocities lie half a step before places, and of those damping takes its part (measured 0.006).
+//! strain energy sigma^2 V / (2 E) within 1 %, and its ledger closes within 1e-3 of that, on a grid of its own within
+//! 0.01: there velocities lie half a step before places, and of those damping takes its part (measured 0.006).
 
 use crate::trial::{mean_where, run_to, start};
 

@@ -5,10 +5,10 @@
 //! Set-up: a bar of 16 by 4 cells that swings along its length and across, whole and cut in the middle, in the plane
 //! and in space; two disks that meet off centre with friction, with cells of one size and of another half as large.
 //!
-//! Expected: along its length the cut bar swings as one that is half a cell longer, for so the layer of the glue yields:
-//! with 1 + 1/32 of the period within 0.5 %; across within 5 % of the whole one. It keeps its energy within 1 %, and
-//! momentum to round-off. Disks keep momentum and spin to round-off and energy with what friction took within 1 %, in steps of the
-//! finer cells.
+//! Expected: along its length the cut bar swings as one that is half a cell longer, for so the layer of the glue
+//! yields: with 1 + 1/32 of the period within 0.5 %; across within 5 % of the whole one. It keeps its energy within 1
+//! %, and momentum to round-off. Disks keep momentum and spin to round-off and energy with what friction took within 1
+//! %, in steps of the finer cells.
 
 use crate::trial::{RUBBER, run_to, start};
 use std::f64::consts::PI;

@@ -3,8 +3,9 @@
 //! Source: two masses on a spring, omega^2 = k (1/m_1 + 1/m_2); with a dashpot dE/dt = -c (dl/dt)^2.
 //!
 //! Set-up: two stiff blocks apart, joined by a spring between the faces that look at each other: both deform, on
-//! grids of their own or one of them on the common grid, or one is rigid and free, or one is driven; in the plane and in
-//! space, with each stress update; along a line that is none of the axes; a spring far stiffer than a step could follow.
+//! grids of their own or one of them on the common grid, or one is rigid and free, or one is driven; in the plane and
+//! in space, with each stress update; along a line that is none of the axes; a spring far stiffer than a step could
+//! follow.
 //!
 //! Expected: the period within 1e-3; momentum and angular momentum to round-off; the ledger with the
 //! works of the springs within 1e-3 of the energy; a dashpot takes the energy of its impulse; a stiff spring holds the

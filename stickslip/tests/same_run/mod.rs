@@ -1,4 +1,5 @@
-//! Runs of tests, and whether two of a scene are one: every file but the times in the record and the checkpoints, byte by byte.
+//! Runs of tests, and whether two of a scene are one: every file but the times in the record and the checkpoints, byte
+//! by byte.
 
 #![allow(dead_code, unused_macros)] // each test uses some of it
 
